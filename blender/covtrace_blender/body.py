@@ -24,7 +24,7 @@ def undeformed(mesh):
     return values.reshape(-1, 3)
 
 
-def _corner_normals(mesh, positions, triangles, loops):
+def corner_normals(mesh, positions, triangles, loops):
     """(n, 3, 3) unit normals, of smooth faces those of their corners."""
     normals = np.repeat(face_normals(positions[triangles])[:, None], 3, axis=1)
     smooth = export_meshes.smooth_triangles(mesh)
@@ -55,7 +55,7 @@ class Body:
         self.rest = rest[self.triangles].astype(float)
         of_vertex = {"OBJECT": positions, "GENERATED": (rest - low) / size}
         self._corners = {kind: values[self.triangles] for kind, values in of_vertex.items()}
-        self._corners["NORMAL"] = _corner_normals(mesh, positions, vertices, export_meshes.triangle_loops(mesh))[chosen]
+        self._corners["NORMAL"] = corner_normals(mesh, positions, vertices, export_meshes.triangle_loops(mesh))[chosen]
         for layer in mesh.uv_layers:
             uvs = export_meshes.loop_uvs(mesh, layer)[loops]
             uvs = np.concatenate((uvs, np.zeros((*uvs.shape[:2], 1), np.float32)), axis=-1)

@@ -16,10 +16,11 @@ class Emission:
 
 class Light:
     """The light of one shader: the sockets of its colour and strength, and its weight. share: a number, or None where images
-    make it; steps: [(Mix, whether it is the second part of it)] on the way there."""
+    make it; steps: [(Mix, whether it is the second part of it)] on the way there; opacity: the socket of what weakens it
+    besides, or None."""
 
-    def __init__(self, colour, strength, share, steps):
-        self.colour, self.strength, self.share, self.steps = colour, strength, share, steps
+    def __init__(self, colour, strength, share, steps, opacity=None):
+        self.colour, self.strength, self.share, self.steps, self.opacity = colour, strength, share, steps, opacity
 
 
 def either(inputs, *names):
@@ -28,7 +29,10 @@ def either(inputs, *names):
 
 
 class EmissionReader(OpacityReader):
-    """Reads the emission of shaders. It counts where they stop light, so that mixtures with what lets it pass don't weaken it."""
+    """Reads the emission of shaders. It counts where they stop light, so that mixtures with what lets it pass don't weaken it;
+    in trees that are `in_full` it counts everywhere, and such mixtures weaken it."""
+
+    in_full = False
 
     def _emission_of(self, node):
         """The Emission of a tree, or None."""
@@ -77,26 +81,25 @@ class EmissionReader(OpacityReader):
         if node.type == "ADD_SHADER":
             return [light for socket in node.inputs[-2:] for light in self._lights(self._linked(socket)[0], share, steps)]
         if node.type != "MIX_SHADER":
-            return [Light(*self._light_sockets(node), share, steps)]
+            return [self._light(node, share, steps)]
         parts = self._parts(node)
-        opacities = [self._opacity(part) for part in parts]
-        mixed = self._mix_share(node)
-        second = self._share_of_opaque(node, mixed, *opacities)
+        opacities = [Value(1.0) if self.in_full else self._opacity(part) for part in parts]
+        second = self._share_of_opaque(node, self._mix_share(node), *opacities)
         found = []
         for part, opacity, is_second in zip(parts, opacities, (False, True)):
             if not opacity.image and opacity.constant <= 0:
-                self._tell_lost(part, mixed, is_second)
                 continue
             own = None if second.image else second.constant if is_second else 1 - second.constant
             if own != 0:
                 found += self._lights(part, None if own is None or share is None else own * share, (*steps, (node, is_second)))
         return found
 
-    def _tell_lost(self, part, mixed, is_second):
-        """Tells of the light in a part of a mixture that lets all light pass. mixed: the Value of the second part's share."""
-        has_part = mixed.image or mixed.constant != (0 if is_second else 1)
-        if has_part and part.type == "ADD_SHADER" and self._shines(part):
-            self.warn(f"material '{self.name}': the light of '{part.name}' is lost where what it is added to lets light pass")
+    def _light(self, node, share, steps):
+        """The Light of a shader's node."""
+        sockets, opacity = self._light_sockets(node), self._opacity(node) if self.in_full else Value(1.0)
+        if opacity.image:
+            return Light(*sockets, None, steps, node.inputs["Alpha"])
+        return Light(*sockets, None if share is None else share * opacity.constant, steps)
 
     def _light_at(self, nodes, lights):
         """The sum of [(Light, colour, strength)] at the places of an Evaluator: (3,) or (n, 3)."""
@@ -104,8 +107,10 @@ class EmissionReader(OpacityReader):
         for light, colour, strength in lights:
             weight = nodes.number(light.strength) if strength.image else strength.constant
             for mix, is_second in light.steps:
-                share = self._opaque_share_at(nodes, mix)
+                share = self._share_at(nodes, mix) if self.in_full else self._opaque_share_at(nodes, mix)
                 weight = weight * (share if is_second else 1 - share)
+            if light.opacity:
+                weight = weight * np.clip(nodes.number(light.opacity), 0, 1)
             total = total + np.asarray(weight)[..., None] * (nodes.vector(light.colour) if colour.image else np.array(colour.constant))
         return total.astype(np.float32)
 

@@ -16,7 +16,7 @@ def _world_to_camera(matrix):
 def _settings(scene):
     chosen = scene.covtrace
     return (f'Sampler "zsobol" "integer pixelsamples" {max(1, round(chosen.samples))}\n'
-            f'Integrator "volpath" "integer maxdepth" {chosen.max_depth}\n')
+            f'Integrator "volpath" "integer maxdepth" {chosen.max_depth} "bool channelbychannel" true\n')
 
 
 class SceneCamera:

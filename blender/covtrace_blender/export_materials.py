@@ -8,38 +8,39 @@ import numpy as np
 from . import hair_pigment
 from .baked_images import BakedImages
 from .baking import Baker, Surface
-from .export_principled import PrincipledExporter
+from .export_shaders import stretch_of_glossy, stretch_of_layers
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
 from .node_signature import all_nodes
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .shader_nodes.light_path import RAYS, groups_of_rays
+from .sums import SumExporter
 
 TRANSPARENT = '"float alpha" 0'
-ROUNDING = 1e-6  # of opacities
 
 
 class Variant:
     """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, the
     names of the UV maps that it reads ("" is the mesh's), and the name of the medium that fills what it is on, or "". body:
-    the Body whose atlas stands for the UV map, or None."""
+    the Body whose atlas stands for the UV map, or None. is_light_alone: whether it is no surface but for its light. tangent: the Tangent that it
+    wants of its mesh, or None."""
 
-    body = None
+    body, is_light_alone = None, False
 
-    def __init__(self, rays, name, emission=None, alpha="", uv_maps=(), medium=""):
+    def __init__(self, rays, name, emission=None, alpha="", uv_maps=(), medium="", tangent=None):
         self.rays, self.name, self.emission, self.alpha, self.uv_maps = rays, name, emission, alpha, uv_maps
-        self.medium = medium
+        self.medium, self.tangent = medium, tangent
 
 
-class MaterialExporter(PrincipledExporter):
+class MaterialExporter(SumExporter):
     """Writes textures and materials into `out`, each once; `variants(m)` returns what shapes need."""
 
     def __init__(self, out, folder, warn):
         self.out, self.warn = out, warn
         self.files, self.media = TextureFiles(folder, warn), Media(out)
         self.baker, self.baked = Baker(self.files.source), BakedImages()
-        self.known, self.of_objects = {}, set()
+        self.known, self.of_objects, self.interfaces = {}, set(), set()
         self.count = 0
 
     def variants(self, material, place=None, surface_of=lambda material_name: Surface()):
@@ -74,7 +75,7 @@ class MaterialExporter(PrincipledExporter):
         for text in told:
             warn(text)
         for variant in exported:
-            variant.body = self.surface.body
+            variant.body, variant.is_light_alone = self.surface.body, variant.name in self.interfaces and not variant.medium
         return exported
 
     # -- shaders
@@ -105,8 +106,9 @@ class MaterialExporter(PrincipledExporter):
         return [v for v in variants if v not in alone]
 
     def _export(self, material):
-        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps, medium), to rays of the baker's kind."""
-        self.uv_maps = []
+        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps, medium, Tangent or None), to rays of the baker's
+        kind."""
+        self.uv_maps, self.tangent = [], None
         output = material.node_tree.get_output_node("CYCLES")
         if output and output.inputs["Displacement"].is_linked:
             self.warn(f"material '{self.name}': Displacement is not supported and left out")
@@ -117,13 +119,22 @@ class MaterialExporter(PrincipledExporter):
             # A body that is nothing but its volume.
             if node:
                 self._tell_of_tint(node)
-            return self._make("interface", []), None, "", (), medium
+            return self._make("interface", []), None, "", (), medium, None
         if node is None:
-            return self._black(), None, "", (), ""
-        shader, emission, opacity = self._shader(node), self._emission_of(node), self._opacity(node)
-        alpha = self._number("alpha", opacity) if opacity.image or opacity.constant < 1 - ROUNDING else ""
+            return self._black(), None, "", (), "", None
+        self.in_full = self._has_sum(node)
+        shader, emission = self._whole(node) if self.in_full else self._shader(node), self._emission_of(node)
+        opacity = Value(1.0) if self.in_full else self._opacity(node)
+        alpha = self._number("alpha", opacity) if self._is_clear(opacity) else ""
+        if shader in self.interfaces and not medium:
+            if emission:
+                # Interfaces have no light; rays pass this surface for its light's sake.
+                shader = self._black()
+                self.interfaces.add(shader)
+            else:
+                alpha = TRANSPARENT
         self._ask_for_body_of_uv_maps(node)
-        return shader, emission, alpha, tuple(self.uv_maps), medium
+        return shader, emission, alpha, tuple(self.uv_maps), medium, self.tangent
 
     def _ask_for_body_of_uv_maps(self, node):
         """Raises NeedsBody where images lie on several UV maps, of which a mesh has one here."""
@@ -185,28 +196,35 @@ class MaterialExporter(PrincipledExporter):
     def _rough(self, node):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)
 
-    def _tell_left_out_of_metal(self, node):
-        """Warns of what changes a node Glossy or Metallic and is left out."""
-        for name in ("Anisotropy", "Thin Film Thickness"):
-            if name in node.inputs and (node.inputs[name].is_linked or node.inputs[name].default_value != 0):
-                self.warn(f"material '{self.name}': {name} of '{node.name}' is not supported and left out")
+    def _tell_thin_film(self, node):
+        """Warns of a film on a node Glass or Metallic."""
+        film = node.inputs.get("Thin Film Thickness")
+        if film and (film.is_linked or film.default_value != 0):
+            self.warn(f"material '{self.name}': {film.name} of '{node.name}' is not supported and left out")
 
     def _glossy(self, node):
-        self._tell_left_out_of_metal(node)
-        return self._metal(self._value(node.inputs["Color"]), self._rough(node), None, self._scattering(node) + self._normal_map(node))
+        return self._metal(self._value(node.inputs["Color"]), self._rough(node), None, self._scattering(node) + self._normal_map(node),
+                           self._stretch_of(node))
+
+    def _stretch_of(self, node):
+        """Those of a node Glossy or Glass. Before Blender 4.0 the first has a node of its own that is anisotropic."""
+        return self._stretch(node, "Anisotropy", "Rotation", stretch_of_glossy)
 
     def _metallic(self, node):
-        self._tell_left_out_of_metal(node)
+        self._tell_thin_film(node)
         get, rest = node.inputs, self._scattering(node) + self._normal_map(node)
+        stretch = self._stretch(node, "Anisotropy", "Rotation", stretch_of_layers)
         if node.fresnel_type == "F82":
-            return self._metal(self._value(get["Base Color"]), self._rough(node), self._value(get["Edge Tint"]), rest)
+            return self._metal(self._value(get["Base Color"]), self._rough(node), self._value(get["Edge Tint"]), rest, stretch)
         return self._make("conductor", [
             self._index("eta", self._value(get["IOR"])), self._index("k", self._value(get["Extinction"])),
-            *self._roughness(self._rough(node)), *rest])
+            *self._roughness(self._rough(node), stretch), *rest])
 
     def _glass(self, node):
+        self._tell_thin_film(node)
         return self._clear(self._value(node.inputs["Color"]), self._value(node.inputs["Roughness"], True),
-                           self._plain(node.inputs["IOR"]), self._scattering(node) + self._normal_map(node))
+                           self._plain(node.inputs["IOR"]), self._scattering(node) + self._normal_map(node),
+                           stretch=self._stretch_of(node))
 
     def _hair(self, node):
         """Principled Hair: pbrt's hair has the same model, Chiang's."""
@@ -272,14 +290,6 @@ class MaterialExporter(PrincipledExporter):
         return None
 
     def _add_shader(self, node):
-        others, opacity = self._parts(node), self._opacity(node)
-        for emitter in (self._linked(node.inputs[i])[0] for i in (0, 1)):
-            if emitter and emitter.type == "EMISSION" and (opacity.image or opacity.constant < 1 - ROUNDING):
-                self.warn(f"material '{self.name}': the light of '{emitter.name}' is lost where what it is added to lets light pass")
-        if len(others) == 1:
-            return self._shader(others[0])
-        if not others:
-            return self._black()
-        self.warn(f"material '{self.name}': a sum of two surfaces is rendered as their mean")
-        share = self._share_of_opaque(node, self._mix_share(node), *(self._opacity(other) for other in others))
-        return self._mix(self._shader(others[0]), self._shader(others[1]), share)
+        """The surface of a sum of at most one with light."""
+        surfaces = self._parts(node)
+        return self._shader(surfaces[0]) if surfaces else self._black()

@@ -85,10 +85,10 @@ def loop_uvs(mesh, layer):
     return uvs.reshape(-1, 2)
 
 
-def parts(mesh, uvs_of_slot, piece_of_triangle=None):
-    """Yields (material slot, piece, positions, normals or None, uvs or None, triangles).
+def parts(mesh, uvs_of_slot, piece_of_triangle=None, tangents_of_slot=lambda slot: None):
+    """Yields (material slot, piece, positions, normals or None, uvs or None, triangles, tangents or None).
 
-    uvs_of_slot(slot): (n, 3, 2) of all triangles' corners, or None. piece_of_triangle: pieces that stay apart; None: all is piece 0.
+    uvs_of_slot(slot), tangents_of_slot(slot): (n, 3, 2) and (n, 3, 3) of all triangles' corners, or None. piece_of_triangle: pieces that stay apart; None: all is piece 0.
     Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth shading have no
     normals: the triangles' own are theirs.
     """
@@ -101,7 +101,7 @@ def parts(mesh, uvs_of_slot, piece_of_triangle=None):
     normals = loop_normals(mesh) if smooth.any() else None
     piece = np.zeros(len(slots), dtype=int) if piece_of_triangle is None else piece_of_triangle
     for slot, number in np.unique(np.column_stack((slots, piece)), axis=0):
-        uvs = uvs_of_slot(int(slot))
+        uvs, tangents = uvs_of_slot(int(slot)), tangents_of_slot(int(slot))
         for is_smooth in (False, True):
             chosen = (slots == slot) & (piece == number) & (smooth == is_smooth)
             if not chosen.any():
@@ -111,6 +111,9 @@ def parts(mesh, uvs_of_slot, piece_of_triangle=None):
                 columns.append(normals[loops[chosen].ravel()])
             if uvs is not None:
                 columns.append(uvs[chosen].reshape(-1, 2))
+            if tangents is not None:
+                columns.append(tangents[chosen].reshape(-1, 3))
             distinct, corners = _join(np.hstack(columns).astype(np.float32))
-            yield (int(slot), int(number), distinct[:, :3], distinct[:, 3:6] if is_smooth else None,
-                   distinct[:, -2:] if uvs is not None else None, corners.reshape(-1, 3))
+            found = iter(np.split(distinct, np.cumsum([c.shape[1] for c in columns])[:-1], axis=1))
+            yield (int(slot), int(number), next(found), next(found) if is_smooth else None, next(found) if uvs is not None else None,
+                   corners.reshape(-1, 3), next(found) if tangents is not None else None)

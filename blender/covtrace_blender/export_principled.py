@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .emission import EmissionReader, either
-from .export_shaders import squared
+from .export_shaders import squared, stretch_of_layers
 from .export_sockets import Value
 
 
@@ -29,8 +29,8 @@ def is_white(value):
 
 # Features of Principled that are left out: names of the socket, and the value at which it changes
 # nothing.
-LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen",), 0), (("Anisotropic",), 0),
-            (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
+LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen",), 0), (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0),
+            (("Thin Wall",), 0), (("Transmission Dispersion Scale",), 0))
 
 
 def is_colour(socket):
@@ -89,14 +89,14 @@ class PrincipledExporter(EmissionReader):
         """A Value of colour: the tint of what dielectrics reflect at the normal, and of metals' edges."""
         return self._value(inputs["Specular Tint"]) if is_colour(inputs["Specular Tint"]) else WHITE
 
-    def _diffuse_under_specular(self, node, base, roughness, rest):
+    def _diffuse_under_specular(self, node, base, roughness, rest, stretch):
         reflectance, tint = self._reflectance(node.inputs), self._specular_tint(node.inputs)
         if is_white(tint):
             shape = self._scattering(node)
         else:
             shape = [self._colour("normalreflectance", tint, lambda t: t * reflectance, ("normal", reflectance))]
         return self._make("coateddiffuse", [
-            self._colour("reflectance", base), *self._roughness(roughness),
+            self._colour("reflectance", base), *self._roughness(roughness, stretch),
             f'"float eta" {max(eta_of_reflectance(reflectance), 1.0001):.9g}', '"bool reflectsthroughcoat" true', *shape, *rest])
 
     def _principled(self, node):
@@ -106,6 +106,7 @@ class PrincipledExporter(EmissionReader):
         transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
         rest = self._normal_map(node) + self._sheen(get) + self._coat(get)
         self._tell_left_out(get)
+        stretch = self._stretch(node, "Anisotropic", "Anisotropic Rotation", stretch_of_layers)
 
         def is_constant(value, number):
             return not value.image and value.constant == number
@@ -115,17 +116,18 @@ class PrincipledExporter(EmissionReader):
                 self.warn(f"material '{self.name}': Principled's Specular Tint is not supported on glass and left out")
             # Since Blender 4.0 the colour is that of two crossings.
             root = (lambda colour: np.sqrt(np.maximum(colour, 0)), "root") if "Transmission Weight" in get else ()
-            return self._clear(base, roughness, self._plain(get["IOR"]), self._scattering(node) + rest, *root)
+            return self._clear(base, roughness, self._plain(get["IOR"]), self._scattering(node) + rest, *root,
+                               stretch=stretch)
 
         parts = []
         if not is_constant(metallic, 1):
             if is_constant(transmission, 1):
                 parts.append(glass())
             else:
-                coated = self._diffuse_under_specular(node, base, roughness, rest)
+                coated = self._diffuse_under_specular(node, base, roughness, rest, stretch)
                 if not is_constant(transmission, 0):
                     coated = self._mix(coated, glass(), transmission)
                 parts.append(coated)
         if not is_constant(metallic, 0):
-            parts.append(self._metal(base, roughness, self._specular_tint(get), self._scattering(node) + rest))
+            parts.append(self._metal(base, roughness, self._specular_tint(get), self._scattering(node) + rest, stretch))
         return parts[0] if len(parts) == 1 else self._mix(parts[0], parts[1], metallic)

@@ -225,7 +225,11 @@ class SceneExporter:
                 self.warn(f"object '{obj.name}': its textures want UV maps that it has not, or several; '{chosen}' is used for all")
             return export_meshes.loop_uvs(mesh, mesh.uv_layers[chosen])[export_meshes.triangle_loops(mesh)] if chosen else None
 
-        for slot, number, positions, normals, uvs, triangles in export_meshes.parts(mesh, uvs_of_slot, piece):
+        def tangents_of_slot(slot):
+            wanted = next((variant.tangent for variant in self._variants(obj, slot, mesh) if variant.tangent), None)
+            return wanted and wanted.at_corners(mesh)
+
+        for slot, number, positions, normals, uvs, triangles, tangents in export_meshes.parts(mesh, uvs_of_slot, piece, tangents_of_slot):
             if not np.isfinite(positions).all():
                 self.warn(f"object '{obj.name}' has vertices that are not finite and is left out")
                 break
@@ -240,7 +244,7 @@ class SceneExporter:
                 place = np.eye(4)
                 place[:3, 3] = origin
                 motion = place, motions[number] @ place
-            parts += self._parts(self._variants(obj, slot, mesh), positions, normals, uvs, triangles, motion)
+            parts += self._parts(self._variants(obj, slot, mesh), positions, normals, uvs, triangles, motion, tangents)
         obj.to_mesh_clear()
         return parts
 
@@ -327,9 +331,9 @@ class SceneExporter:
             if obj.type == "MESH":
                 self.uv_ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
 
-    def _parts(self, variants, positions, normals, uvs, triangles, motion=None, tube_sides=0):
+    def _parts(self, variants, positions, normals, uvs, triangles, motion=None, tangents=None, tube_sides=0):
         file = f"mesh{len(os.listdir(self.folder))}.ply"
-        ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
+        ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles, tangents)
         return [Part(file, variant, motion, tube_sides) for variant in variants]
 
     def _motions(self, obj, mesh):
@@ -367,7 +371,8 @@ class SceneExporter:
                 image = f' "string filename" "{emission.texture}"' if emission.texture else ""
                 scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else \
                     f'"rgb L" [{numbers(emission.radiance)}]'
-                self.out.write(f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true\n')
+                passes = ' "bool letslightpass" true' if part.variant.is_light_alone else ""
+                self.out.write(f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true{passes}\n')
             unseen = hidden | (set(RAYS) - set(part.variant.rays))
             tubes = f' "integer tubesides" {part.tube_sides}' if part.tube_sides else ""
             self.out.write(f'Shape "plymesh" "string filename" "{part.file}" {part.variant.alpha}{hidden_from(unseen)}{tubes}\n'

@@ -1,9 +1,12 @@
 """Textures and plain materials as text of pbrt-v4, from Values."""
 
+import math
+
 import numpy as np
 
 from .export_sockets import SocketReader, Value
 from .shader_nodes.unsupported import Unsupported
+from .tangents import Tangent
 
 
 def numbers(values):
@@ -15,8 +18,23 @@ def squared(roughness):
     return np.maximum(roughness, 0) ** 2
 
 
+def stretch_of_glossy(anisotropy):
+    """Factors on alpha along and across the tangent, of the nodes Glossy and Glass."""
+    across = 1 - min(abs(anisotropy), 0.99)
+    return (across, 1 / across) if anisotropy > 0 else (1 / across, across)
+
+
+def stretch_of_layers(anisotropy):
+    """The same of the nodes Principled and Metallic, which have no anisotropy below 0."""
+    aspect = math.sqrt(1 - 0.9 * min(max(anisotropy, 0), 1))
+    return 1 / aspect, aspect
+
+
 class ShaderWriter(SocketReader):
-    """Writes textures and materials into `out`, counted by `count`, and their images to `files`."""
+    """Writes textures and materials into `out`, counted by `count`, and their images to `files`. tangent: the Tangent that
+    anisotropic shaders want, or None."""
+
+    tangent = None
 
     def _texture(self, kind, value, treat=lambda v: v, key=""):
         """Declares a texture of an image and returns its name."""
@@ -71,9 +89,39 @@ class ShaderWriter(SocketReader):
                 return second
         return self._make("mix", [f'"string materials" ["{first}" "{second}"]', self._number("amount", amount)])
 
-    def _roughness(self, value):
-        """Blender's roughness squared is the width alpha of GGX."""
-        return [self._number("roughness", value, squared, "squared"), '"bool remaproughness" false']
+    def _roughness(self, value, stretch=None):
+        """Blender's roughness squared is the width alpha of GGX. stretch: factors on that along and across the tangent."""
+        if stretch is None:
+            return [self._number("roughness", value, squared, "squared"), '"bool remaproughness" false']
+        return [*(self._number(f"{axis}roughness", value, lambda r, by=by: np.minimum(squared(r) * by, 1), ("squared", by))
+                  for axis, by in zip("uv", stretch)), '"bool remaproughness" false']
+
+    def _stretch(self, node, amount, turn, stretch_of):
+        """The factors on alpha of an anisotropic node, by its sockets, whose tangent is kept; None where it is none."""
+        if amount not in node.inputs or not (node.inputs[amount].is_linked or node.inputs[amount].default_value != 0):
+            return None
+        strength = self._plain(node.inputs[amount])
+        if strength == 0:
+            return None
+        self._keep_tangent(node, 2 * math.pi * self._plain(node.inputs[turn]))
+        return stretch_of(strength)
+
+    def _keep_tangent(self, node, turn):
+        """Notes the tangents that a node wants of its mesh, which has those of one node."""
+        source, _ = self._linked(node.inputs["Tangent"])
+        if source is None:
+            found = Tangent("Z", "", turn)
+        elif source.type == "TANGENT":
+            found = Tangent(source.axis if source.direction_type == "RADIAL" else "", source.uv_map, turn)
+        else:
+            self.warn(f"material '{self.name}': only the node Tangent gives tangents; those of '{node.name}' go around the z axis")
+            found = Tangent("Z", "", turn)
+        if self.tangent is not None and not self.tangent.is_same(found):
+            self.warn(f"material '{self.name}': its anisotropic shaders have several tangents; one is used for all")
+        elif node.inputs["Normal"].is_linked:
+            self.warn(f"material '{self.name}': the anisotropy of '{node.name}' goes along the UV map, as its normals are changed")
+        else:
+            self.tangent = found
 
     def _normal_map(self, node):
         """Parameters of the map that turns the normal; maps lie as the texture coordinates do, as in Cycles."""
@@ -133,13 +181,13 @@ class ShaderWriter(SocketReader):
         """Parameters of metal and glass whose facets pass light on to each other, where a node's distribution says so."""
         return [f'"bool {prefix}multiplescattering" true'] if node.distribution == "MULTI_GGX" else []
 
-    def _metal(self, colour, roughness, edge, rest):
+    def _metal(self, colour, roughness, edge, rest, stretch=None):
         """edge: the Value of the tint at 82 degrees, whose reflectance else goes to 1 at grazing angles by Schlick's formula;
         None: it is the same at all angles."""
         shape = ['"string edge" "none"'] if edge is None else ['"string edge" "schlick"', self._colour("edgetint", edge)]
-        return self._make("conductor", [self._colour("reflectance", colour), *shape, *self._roughness(roughness), *rest])
+        return self._make("conductor", [self._colour("reflectance", colour), *shape, *self._roughness(roughness, stretch), *rest])
 
-    def _clear(self, colour, roughness, eta, rest, *treat):
+    def _clear(self, colour, roughness, eta, rest, *treat, stretch=None):
         """treat: what makes of the colour the share that one crossing lets pass, as of _colour."""
         return self._make("dielectric", [f'"float eta" {max(eta, 1.0001):.9g}',
-                                         self._colour("transmittance", colour, *treat), *self._roughness(roughness), *rest])
+                                         self._colour("transmittance", colour, *treat), *self._roughness(roughness, stretch), *rest])

@@ -4,6 +4,7 @@ import numpy as np
 
 from .baking import Surface
 from .shader_nodes.unsupported import NeedsBody, Unsupported
+from .working_space import luminance
 
 
 class Value:
@@ -33,7 +34,7 @@ class Value:
     def apply(self, pixels):
         """(h, w, 3 or 4) to (h, w, 3), or to (h, w) where one number is wanted."""
         if self.channel == "grey":
-            values = pixels[..., :3] @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
+            values = luminance(pixels[..., :3])
         elif self.channel is not None:
             values = pixels[..., "RGBA".index(self.channel)]
         else:
@@ -128,7 +129,7 @@ class SocketReader:
     def _constant(self, v, grey):
         if hasattr(v, "__len__"):
             v = tuple(v)[:3]
-            return Value(0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2] if grey else v)
+            return Value(float(luminance(np.array(v, np.float32))) if grey else v)
         return Value(float(v) if grey else (float(v),) * 3)
 
     def _direct_value(self, node, output, grey):

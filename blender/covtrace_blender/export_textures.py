@@ -7,6 +7,7 @@ import zlib
 import numpy as np
 
 from .baked import BakedImage
+from .working_space import from_rec709
 
 
 def to_linear(values):
@@ -39,7 +40,7 @@ def pixels(image, warn):
         values = rgba
     values = values.copy()
     if not image.is_float and image.colorspace_settings.name == "sRGB":
-        values[..., :3] = to_linear(values[..., :3])
+        values[..., :3] = from_rec709(to_linear(values[..., :3]))
     return values
 
 

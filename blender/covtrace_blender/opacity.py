@@ -5,10 +5,8 @@ import numpy as np
 from .export_shaders import ShaderWriter
 from .export_sockets import Value
 from .fresnel import mean_facing, mean_reflectance
-from .shader_nodes.colours import luminance
 from .shader_nodes.unsupported import Unsupported
-
-MEAN = 0.5  # the share of each of two surfaces in a sum, which is rendered as their mean
+from .working_space import luminance
 
 
 def _blended(share, first, second):
@@ -69,16 +67,16 @@ class OpacityReader(ShaderWriter):
         return np.float32(self._opacity(node).constant)
 
     def _mixed_at(self, nodes, node):
-        """The share of the second part of a Mix or an Add, and both opacities."""
-        if node.type == "ADD_SHADER":
-            share = np.float32(MEAN)
-        else:
-            angular = self._angular_share(node.inputs[0])
-            share = np.float32(angular[1]) if angular else np.clip(nodes.number(node.inputs[0]), 0, 1)
-        return (share, *(self._opacity_at(nodes, part) for part in self._parts(node)))
+        """The share of the second part of a Mix, and both opacities."""
+        return (self._share_at(nodes, node), *(self._opacity_at(nodes, part) for part in self._parts(node)))
+
+    def _share_at(self, nodes, node):
+        """The share of the second part of a Mix."""
+        angular = self._angular_share(node.inputs[0])
+        return np.float32(angular[1]) if angular else np.clip(nodes.number(node.inputs[0]), 0, 1)
 
     def _share_of_opaque(self, node, share, first, second):
-        """The share of the second part of a Mix or an Add in what stops light. share: that in all; first, second: both opacities."""
+        """The share of the second part of a Mix in what stops light. share: that in all; first, second: both opacities."""
         if not first.image and not second.image:
             if first.constant == second.constant or not share.image and share.constant in (0, 1):
                 return share
@@ -102,9 +100,7 @@ class OpacityReader(ShaderWriter):
             return otherwise
 
     def _mix_share(self, node):
-        """The share of the second part of a Mix, where the angle of sight decides the mean over all directions; of an Add, too."""
-        if node.type == "ADD_SHADER":
-            return Value(MEAN)
+        """The share of the second part of a Mix, where the angle of sight decides the mean over all directions."""
         angular = self._angular_share(node.inputs[0])
         share = Value(angular[1]) if angular else self._value(node.inputs[0], True)
         return share if share.image else Value(min(max(share.constant, 0.0), 1.0))
@@ -126,4 +122,8 @@ class OpacityReader(ShaderWriter):
         if node.type == "MIX_SHADER":
             return [self._linked(node.inputs[i])[0] for i in (1, 2)]
         nodes = [self._linked(node.inputs[i])[0] for i in (0, 1)]
-        return [other for other in nodes if other and other.type != "EMISSION"]
+        return [other for other in nodes if other and not self._is_light(other)]
+
+    def _is_light(self, node):
+        """Whether a shader is an Emission, or a sum of such alone."""
+        return node.type == "EMISSION" or node.type == "ADD_SHADER" and not self._parts(node)

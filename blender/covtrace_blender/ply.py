@@ -3,15 +3,13 @@
 import numpy as np
 
 
-def write(path, positions, normals, uvs, triangles):
-    """positions (n, 3), normals (n, 3) or None, uvs (n, 2) or None, triangles (m, 3)."""
+def write(path, positions, normals, uvs, triangles, tangents=None):
+    """positions (n, 3), normals (n, 3) or None, uvs (n, 2) or None, triangles (m, 3), tangents (n, 3) or None."""
     columns, names = [positions], ["x", "y", "z"]
-    if normals is not None:
-        columns.append(normals)
-        names += ["nx", "ny", "nz"]
-    if uvs is not None:
-        columns.append(uvs)
-        names += ["u", "v"]
+    for values, own in ((normals, "nx ny nz"), (uvs, "u v"), (tangents, "sx sy sz")):
+        if values is not None:
+            columns.append(values)
+            names += own.split()
     vertices = np.hstack(columns).astype("<f4")
     faces = np.empty(len(triangles), dtype=[("count", "u1"), ("corners", "<i4", (3,))])
     faces["count"] = 3

@@ -1,7 +1,7 @@
 """Light of shaders in mixtures and sums, against Cycles."""
 
 import bpy
-from addon_support import BlenderTest, mean, render
+from addon_support import BlenderTest, material, mean, render
 
 
 class EmissionTest(BlenderTest):
@@ -77,17 +77,27 @@ class EmissionTest(BlenderTest):
         self.export()
         self.assertTrue(any("alone is there, and not weakened" in w for w in self.warnings), self.warnings)
 
-    def test_light_that_is_added_to_what_lets_light_pass_is_told(self):
+    def test_light_that_is_added_to_what_lets_light_pass_is_whole(self):
+        self.background.inputs["Color"].default_value = (0.3, 0.4, 0.5, 1)
         glow, mask = ("add", ("light", 2.0), ("clear",)), self.image("mask", (0.2, 0.9, 0.4, 0.7))
-        for tree in (glow, ("mix", 0.5, glow, ("matt",)), ("mix", mask, glow, ("matt",)), ("mix", 0.5, ("clear",), ("mix", 0.5, ("clear",), glow))):
+        for tree in (glow, ("mix", 0.5, glow, ("matt",)), ("mix", mask, glow, ("matt",)), ("mix", 0.5, ("clear",), ("mix", 0.5, ("clear",), glow)),
+                     ("add", ("light", 0.5), ("principled", 1.0, 0.4))):
             plane = self.plane(self.material_of(tree))
             with self.subTest(tree=tree):
+                self.assert_as_cycles(0.02)
                 self.export()
-                self.assertTrue(any("is lost where what it is added to" in w for w in self.warnings), self.warnings)
+                self.assertEqual(self.warnings, [])
             bpy.data.objects.remove(plane)
-        self.plane(self.material_of(("mix", 1.0, glow, ("matt",))))
-        self.export()
-        self.assertEqual(self.warnings, [])
+
+    def test_light_lets_shadows_pass(self):
+        """A pane that shines and lets light pass casts no shadow on the floor below."""
+        self.plane(material(**self.MATT))
+        pane = self.plane(self.material_of(("add", ("light", 0.2), ("clear",))), size=1, z=1)
+        self.lamp("POINT", energy=200, location=(0.5, 0, 4))
+        self.assert_as_cycles(0.02)
+        shone = mean(render("COVTRACE", 64))[0]
+        bpy.data.objects.remove(pane)
+        self.assertGreater(shone, mean(render("COVTRACE", 64))[0])
 
     def test_lamps_shine_through_mixtures_as_in_cycles(self):
         lamp = self.lamp("POINT", energy=400, shadow_soft_size=0).data

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ..working_space import from_rec709
+
 
 def temperature_of(node):
     """Kelvin; None where it is linked."""
@@ -28,7 +30,7 @@ def _matching(nanometres):
 
 
 def blackbody(kelvin):
-    """Linear Rec.709 of Planck's law; Cycles' range of 800 to 12000 K."""
+    """Planck's law in the scene's colour space; Cycles' range of 800 to 12000 K."""
     kelvin = min(max(kelvin, 800.0), 12000.0)
     nanometres = np.arange(380.0, 781.0, 1.0)
     second_constant = 1.438776877e7  # h c / k in nm K
@@ -37,4 +39,4 @@ def blackbody(kelvin):
     to_rgb = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
                        [0.0556434, -0.2040259, 1.0572252]])  # IEC 61966-2-1
     rgb = to_rgb @ np.array([x, y, z]) / y
-    return tuple(float(max(c, 0)) for c in rgb)
+    return tuple(float(c) for c in from_rec709(np.maximum(rgb, 0)))

@@ -2,13 +2,9 @@
 
 import numpy as np
 
+from ..working_space import luminance
 from .blackbody import blackbody, temperature_of
 from .unsupported import Unsupported
-
-
-def luminance(rgb):
-    """Luminance of linear Rec.709."""
-    return rgb @ np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 def _hue(rgb, largest, spread):

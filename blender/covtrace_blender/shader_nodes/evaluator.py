@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from ..working_space import luminance
 from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, musgrave, noise_nodes, patterns, ramps
-from .colours import luminance
 from .unsupported import Unsupported
 
 # Values by the type of the node: function(node, output, Inputs) to a number or a vector, as the output's type is.
