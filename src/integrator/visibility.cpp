@@ -82,7 +82,6 @@ bool is_met(const LitScene& scene, Ray ray, uint64_t& rays) {
     for (int i = 0; i < kMostInterfaces; ++i) {
         ++rays;
         if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) return false;
-        const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
         if (!(passed_share(scene, hit) > 0)) return true;
         go_on_behind(hit, end, ray);
     }
