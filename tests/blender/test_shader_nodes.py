@@ -68,7 +68,7 @@ class ShaderNodesTest(BlenderTest):
                 a, b = (p[y:y + 20, x:x + 28].reshape(4, 5, 4, 7, 3).mean(axis=(1, 3)) for p in (ours, theirs))
                 text = f"means {a.mean(axis=(0, 1))} against {b.mean(axis=(0, 1))}, worst region {np.abs(a - b).max():.4f}"
                 structure = b.std(axis=(0, 1)).max() if has_structure else 1
-                self.assertGreater(structure, 0.03, "the tile's regions are alike")
+                self.assertGreater(structure, 0.025, "the tile's regions are alike")
                 off = np.abs(a.mean(axis=(0, 1)) - b.mean(axis=(0, 1)))
                 self.assertTrue((off <= mean_tolerance * b.mean(axis=(0, 1))).all(), text)
                 self.assertLess(np.abs(a - b).max(), min(region_tolerance, most_of_structure * structure), text)
@@ -134,10 +134,10 @@ class ShaderNodesTest(BlenderTest):
             return lambda tree: tree.show(tree.node("TexMagic", {"turbulence_depth": depth}, {
                 "Scale": 0.6, "Distortion": 1.2, "Vector": tree.uv()}))
 
-        self.assert_nodes({"fBM": musgrave("FBM"), "multifractal": musgrave("MULTIFRACTAL"),
-                           "hetero": musgrave("HETERO_TERRAIN", Offset=0.4), "hybrid": musgrave("HYBRID_MULTIFRACTAL", Offset=0.3, Gain=2.0),
-                           "ridged": musgrave("RIDGED_MULTIFRACTAL", Scale=1.3, Offset=1.2, Gain=1.0),
-                           **{f"magic {depth}": magic(depth) for depth in (0, 2, 10)}})
+        fractals = {"fBM": musgrave("FBM"), "multifractal": musgrave("MULTIFRACTAL"),
+                    "hetero": musgrave("HETERO_TERRAIN", Offset=0.4), "hybrid": musgrave("HYBRID_MULTIFRACTAL", Offset=0.3, Gain=2.0),
+                    "ridged": musgrave("RIDGED_MULTIFRACTAL", Scale=1.3, Offset=1.2, Gain=1.0)}
+        self.assert_nodes({**(fractals if bpy.app.version < (4, 1) else {}), **{f"magic {depth}": magic(depth) for depth in (0, 2, 10)}})
 
     @unittest.skipUnless("noise_type" in bpy.types.ShaderNodeTexNoise.bl_rna.properties, "this Blender has a node Musgrave")
     def test_fractals_of_noise(self):

@@ -69,3 +69,23 @@ def hashed_numbers(*values):
 def hashed_vector(*values):
     """(..., 3) in [0, 1], of one to four numbers."""
     return np.stack(hashed_numbers(*values), axis=-1)
+
+
+def _permuted(*keys):
+    """int32 arrays of the same number, two or three, by the hash functions pcg2d and pcg3d of Jarzynski and Olano, "Hash Functions for
+    GPU Rendering", JCGT 9(3), 2020, section 4.2, in signed integers."""
+    with np.errstate(over="ignore"):
+        v = [key.astype(np.int32) * np.int32(1664525) + np.int32(1013904223) for key in keys]
+        for is_last in (False, True):
+            for axis in range(len(v)):
+                by = [v[(axis + step) % len(v)] for step in (1, 2)]
+                v[axis] = v[axis] + by[0] * (np.int32(1664525) if len(v) == 2 else by[1])
+            if not is_last:
+                v = [axis ^ (axis >> np.int32(16)) for axis in v]
+    return v
+
+
+def permuted_numbers(*keys):
+    """Arrays in [0, 1], as many as there are arrays of whole numbers, two or three."""
+    largest = np.int32(0x7FFFFFFF)
+    return [(axis & largest).astype(np.float32) / np.float32(largest) for axis in _permuted(*keys)]

@@ -2,9 +2,10 @@
 
 import itertools
 
+import bpy
 import numpy as np
 
-from .hashing import hashed_numbers
+from .hashing import hashed_numbers, permuted_numbers
 from .lattice import Lattice
 
 # Lengths of a vector, whose components are arrays each.
@@ -16,10 +17,21 @@ METRICS = {
 }
 
 
+IS_PERMUTED = bpy.app.version >= (5, 0, 0)  # whether cells have the numbers of Blender 5
+
+
 def _point_in(cells):
     """d arrays in [0, 1]: the points of cells, d arrays (m,) of whole numbers."""
-    keys = [axis.astype(np.float32) for axis in cells]
-    return hashed_numbers(*keys)[:len(keys)]
+    if IS_PERMUTED:
+        return permuted_numbers(*cells)
+    return hashed_numbers(*(axis.astype(np.float32) for axis in cells))[:len(cells)]
+
+
+def _colour_of(cells):
+    """Three arrays in [0, 1], of the same cells."""
+    if IS_PERMUTED:
+        return permuted_numbers(*cells, *(np.zeros_like(cells[0]),) * (3 - len(cells)))
+    return hashed_numbers(*(axis.astype(np.float32) for axis in cells))
 
 
 class _Cells:
@@ -57,7 +69,7 @@ def nearest(p, jitter, metric, is_second):
     owner = [base + offset.take(found) for base, offset in zip(cells.base, np.array(cells.offsets, np.int32).T)]
     jitter = np.asarray(jitter, np.float32)
     position = np.stack([axis + point * jitter for axis, point in zip(owner, _point_in(owner))], axis=-1).astype(np.float32)
-    return distance, np.stack(hashed_numbers(*(axis.astype(np.float32) for axis in owner)), axis=-1), position
+    return distance, np.stack(_colour_of(owner), axis=-1), position
 
 
 def distance_to_edge(p, jitter):
