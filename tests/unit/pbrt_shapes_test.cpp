@@ -138,6 +138,7 @@ TEST(SceneShapes, CurvesBecomeTubesAroundThem) {
             EXPECT_LE(p.z, 3 + 1e-5f);
         }
         ASSERT_EQ(m.normals.size(), m.positions.size());
+        EXPECT_EQ(scene.shapes.front().tube_sides, 24) << "light is scattered by it once";
         // The mean width over all sides, around the first ring, is the circumference over pi.
         float around = 0;
         size_t sides = 0;
@@ -158,7 +159,6 @@ TEST(SceneShapes, CurvesBecomeTubesAroundThem) {
         "\"float width\" 0");
     expect_near(mesh_of(scene).positions.front(), {4, 1, 0}, 1e-5f);
     expect_near(mesh_of(scene).positions.back(), {1, 4, 1}, 1e-5f);
-    EXPECT_EQ(scene.shapes.front().tube_sides, 24) << "light is scattered by it once";
 }
 
 TEST(SceneShapes, MeshesMayBeTubes) {
@@ -179,6 +179,7 @@ TEST(SceneShapes, SlenderCurvesAreTurnedPrisms) {
     for (size_t shape : {0, 1}) {
         const TriangleMesh& m = mesh_of(scene, shape);
         EXPECT_TRUE(m.normals.empty());
+        EXPECT_EQ(scene.shapes.at(shape).tube_sides, 5);
         const Vec3 corner = m.positions[0];
         angles[shape] = std::atan2(corner.y, corner.x);
         for (const auto& t : m.triangles) {
