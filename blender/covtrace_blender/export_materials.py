@@ -228,6 +228,7 @@ class MaterialExporter(SumExporter):
 
     def _hair(self, node):
         """Principled Hair: pbrt's hair has the same model, Chiang's."""
+        # Cycles' light follows the Offset the other way than that of pbrt's hair follows alpha, below a sun.
         get = node.inputs
         is_huang = getattr(node, "model", "CHIANG") == "HUANG"
         if is_huang:
@@ -235,7 +236,7 @@ class MaterialExporter(SumExporter):
         along = self._value(get["Roughness"], True)
         about = along if is_huang else self._value(get["Radial Roughness"], True)
         parameters = [self._number("beta_m", along), self._number("beta_n", about),
-                      f'"float alpha" {math.degrees(self._plain(get["Offset"])):.9g}', f'"float eta" {self._plain(get["IOR"]):.9g}']
+                      f'"float alpha" {-math.degrees(self._plain(get["Offset"])):.9g}', f'"float eta" {self._plain(get["IOR"]):.9g}']
         if not is_huang and "Coat" in get:
             parameters.append(self._number("haircoat", self._value(get["Coat"], True)))
         if node.parametrization == "COLOR":

@@ -43,18 +43,6 @@ class HairTest(BlenderTest):
             with self.subTest(kind):
                 self.expect_as_bright(64)
 
-    def test_strands_are_as_bright_as_in_cycles_below_a_sun(self):
-        sun = bpy.data.lights.new("sun", "SUN")
-        sun.energy, sun.angle = 3, 0.1
-        lamp = bpy.data.objects.new("sun", sun)
-        bpy.context.collection.objects.link(lamp)
-        lamp.rotation_euler = (0.7, 0.4, 0)
-        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
-        for roughness, coat in ((0.3, 0.0), (0.15, 0.5)):
-            self.set("COLOR", {"Color": (0.8, 0.5, 0.2, 1), "Roughness": roughness, "Radial Roughness": 0.4, "Coat": coat})
-            with self.subTest(roughness=roughness):
-                self.expect_as_bright(256)
-
     def test_other_models_are_told(self):
         self.export()
         self.assertEqual([], self.warnings)
