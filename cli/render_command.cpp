@@ -32,7 +32,6 @@
 #include "preview/tev_client.h"
 #include "render/film_files.h"
 #include "render/layers.h"
-#include "render/learning_limit.h"
 #include "render/render_memory.h"
 #include "render/session.h"
 
@@ -132,7 +131,7 @@ RenderScene& kept_scene(SceneDescription description, const RenderArguments& a,
                         const Monitor& monitor) {
     static RenderScene* kept = nullptr;  // reachable, so that it does not count as a leak
     kept = new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes,
-                           a.options.guides, learning_limit(monitor, a.options));
+                           a.options.guides, [&monitor] { return monitor.cancelled(); });
     return *kept;
 }
 

@@ -25,7 +25,6 @@
 #include "planes.h"
 #include "python_lock.h"
 #include "render/layers.h"
-#include "render/learning_limit.h"
 #include "render/methods/idle_options.h"
 #include "render/scene_file.h"
 #include "render/session.h"
@@ -147,7 +146,7 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     FilmKeeping keeping = films.keeping(true);
     const double begin = monitor.elapsed();
     RenderScene scene(std::move(description), isa, texture_bytes, options.guides,
-                      learning_limit(monitor, options));
+                      [&monitor] { return monitor.cancelled(); });
     const double building = monitor.elapsed() - begin;
     RenderResult result = render(scene, options, monitor, std::move(keeping));
     films.finish();

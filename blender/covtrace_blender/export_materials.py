@@ -228,7 +228,7 @@ class MaterialExporter(SumExporter):
 
     def _hair(self, node):
         """Principled Hair: pbrt's hair has the same model, Chiang's."""
-        # Cycles' light follows the Offset the other way than that of pbrt's hair follows alpha, below a sun.
+        # Cycles turns the sign of its alpha where it sets the model up (bsdf_hair_chiang_setup)
         get = node.inputs
         is_huang = getattr(node, "model", "CHIANG") == "HUANG"
         if is_huang:

@@ -66,12 +66,21 @@ std::vector<bool> are_translucent(const SceneDescription& scene) {
     return are;
 }
 
-/// Whether rays pass a shape from within: a tube in the place of a ribbon with nothing in it, whose
-/// inside does not shine.
-bool is_left_freely(const ShapeDescription& shape, const std::vector<bool>& translucent) {
-    return shape.tube_sides > 0 && shape.material >= 0 &&
-           translucent[static_cast<size_t>(shape.material)] && shape.inside == shape.outside &&
-           shape.area_light < 0;
+/// Whether a shape is a strand of hair, whose material tells where light leaves it: it has no
+/// inside.
+bool is_strand(const SceneDescription& scene, const ShapeDescription& shape) {
+    if (shape.tube_sides == 0 || shape.material < 0) return false;
+    const MaterialDescription& m = scene.materials[static_cast<size_t>(shape.material)];
+    return !m.mix && std::holds_alternative<HairMaterial>(m.value);
+}
+
+/// Whether rays pass a shape from within: a strand, or another tube in the place of a ribbon with
+/// nothing in it, whose inside does not shine.
+bool is_left_freely(const SceneDescription& scene, const ShapeDescription& shape,
+                    const std::vector<bool>& translucent) {
+    return is_strand(scene, shape) || (shape.tube_sides > 0 && shape.material >= 0 &&
+                                       translucent[static_cast<size_t>(shape.material)] &&
+                                       shape.inside == shape.outside && shape.area_light < 0);
 }
 
 /// Whether alpha hides all of the shape. Such a shape is a light that can't be seen: no other one
@@ -120,7 +129,8 @@ struct Geometry::Impl::Builder {
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
         const bool passes = lets_light_pass(scene, shape);
         g.placed.push_back({shape, flip, is_instanced, passes, is_pane(scene, shape),
-                            is_left_freely(shape, translucent)});
+                            is_left_freely(scene, shape, translucent)});
+        if (is_strand(scene, shape)) g.placed.back().description.inside = shape.outside;
         constexpr RayKinds kSeen = set_of(RayKind::camera) | set_of(RayKind::shadow);
         g.is_in_the_way.push_back(!passes && !has_interface_material(scene, shape) &&
                                   (shape.visible_to & kSeen) != 0);

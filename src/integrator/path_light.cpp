@@ -37,7 +37,8 @@ void PathTracer::escape() {
 }
 
 void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex) {
-    const float way = depth_ == 0 ? kInfinity : distance(ray_begin_, hit.position);
+    const float way =
+        sharp_so_far_ ? kInfinity : specular_way_ + distance(ray_begin_, hit.position);
     const Rgb light = scene_.lights.emitted(hit, wo, way);
     if (is_black(light)) return;
     // Weight the emission against light sampling, which could not find it by a specular lobe

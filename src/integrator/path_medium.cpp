@@ -75,6 +75,7 @@ bool PathTracer::scatter_in_medium(float distance) {
         vertex->scatters = true;
         vertex->next_event = {wi, {}};
     }
+    specular_way_ = 0;
     ray_.origin = ray_begin_ = place.position;
     ray_.direction = wi;
     ray_.kind = RayKind::volume;

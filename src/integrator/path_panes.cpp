@@ -100,6 +100,7 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
     Rgb carried = light.scattered;
     float path_pdf = light.path_pdf;
     int panes = 0;
+    float way = 0;      // its length so far
     float to_pane = 0;  // distance of the first one
     float pdf = -1;     // density of the sample, looked for where there is light
     const auto add = [&](Rgb radiance) {
@@ -127,8 +128,8 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
                 add(scene_.lights.environment(ray.origin, ray.direction, ray.kind));
             return;
         }
-        add(scene_.lights.emitted(hit, -ray.direction,
-                                  distance(light.place.position, hit.position)));
+        way += hit.t;
+        add(scene_.lights.emitted(hit, -ray.direction, way));
         // Go through it if it is a pane, or if it is not in the way
         const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
         if (shape.is_pane) {

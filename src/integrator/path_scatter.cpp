@@ -161,6 +161,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     // Move the ray to the surface, into the medium beyond
     const SurfaceHit& hit = surface.hit;
     medium_ = medium_beyond(surface.shape, hit, wi, medium_);
+    specular_way_ = specular_ ? specular_way_ + distance(ray_begin_, hit.position) : 0;
     ray_.origin = ray_begin_ = Geometry::offset_origin(hit, wi);
     ray_.direction = wi;
     ray_.t_max = kInfinity;

@@ -264,6 +264,8 @@ class PathTracer {
     const bool samples_through_panes_, samples_by_mirrors_;
     LitPlace lit_;    // the last vertex
     Vec3 ray_begin_;  // where its ray began
+    // Length of the way to there from the last event that was not specular
+    float specular_way_ = 0;
 };
 
 }  // namespace covtrace

@@ -226,6 +226,68 @@ class MaterialsTest(BlenderTest):
                 for thing in things:
                     bpy.data.objects.remove(thing)
 
+    def test_unknown_nodes_are_told(self):
+        m = material()
+        path = m.node_tree.nodes.new("ShaderNodeLightPath")
+        m.node_tree.links.new(path.outputs["Ray Length"], m.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
+        self.plane(m)
+        self.export()
+        self.assertTrue(any("'material': node 'Light Path' at 'Base Color'" in w for w in self.warnings), self.warnings)
+
+    def set_distribution(self, m, distribution):
+        for node in m.node_tree.nodes:
+            if hasattr(node, "distribution"):
+                node.distribution = distribution
+
+    def assert_share(self, m, distribution, share, tolerance=0.02):
+        """Asserts which share of a white surrounding's light the middle of the picture shows, here and in Cycles, and that
+        nothing is told."""
+        self.set_distribution(m, distribution)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        for engine in ("COVTRACE", "CYCLES"):
+            self.assertAlmostEqual(mean(render(engine, 64))[0], share, delta=tolerance, msg=engine)
+
+    def test_multiscatter_ggx_keeps_energy(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.lens = 200
+        white = (1, 1, 1, 1)
+        for name, roughness, once in (("Principled", 0.2, 0.99), ("Principled", 0.5, 0.915), ("Principled", 0.9, 0.42), ("Glossy", 0.9, 0.42)):
+            m = (material(Base_Color=white, Metallic=1.0, Roughness=roughness) if name == "Principled" else
+                 shader("ShaderNodeBsdfGlossy", Color=white, Roughness=roughness))
+            plane = self.plane(m)
+            for distribution, share in (("GGX", once), ("MULTI_GGX", 1)):
+                with self.subTest(name, distribution=distribution, roughness=roughness):
+                    self.assert_share(m, distribution, share)
+            bpy.data.objects.remove(plane)
+
+    def test_multiscatter_ggx_of_glass_keeps_energy(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.lens = 100
+        cycles, white = self.scene.cycles, (1, 1, 1, 1)
+        self.scene.covtrace.max_depth = cycles.max_bounces = cycles.transmission_bounces = cycles.glossy_bounces = 64
+        cycles.blur_glossy = 0  # which loses light in glass
+        for m in (shader("ShaderNodeBsdfGlass", Color=white, Roughness=0.7, IOR=1.5),
+                  material(Base_Color=white, Transmission=1.0, Roughness=0.7, IOR=1.5)):
+            bpy.ops.mesh.primitive_uv_sphere_add(radius=1, segments=64, ring_count=32)
+            bpy.ops.object.shade_smooth()
+            ball = bpy.context.object
+            ball.data.materials.append(m)
+            with self.subTest(m.name):
+                self.assert_share(m, "MULTI_GGX", 1)
+            self.set_distribution(m, "GGX")
+            self.assertLess(mean(render("COVTRACE", 64))[0], 0.9)
+            bpy.data.objects.remove(ball)
+
+    def test_multiscatter_ggx_below_a_coat(self):
+        m = material(Metallic=1.0, Clearcoat=1.0)
+        self.plane(m)
+        for distribution, is_there in (("GGX", False), ("MULTI_GGX", True)):
+            self.set_distribution(m, distribution)
+            text = self.export()
+            self.assertEqual('"bool multiplescattering" true' in text, is_there)
+            self.assertIn('"float coat" ', text)
+
     def test_what_is_left_out_is_told(self):
         """Each of the shaders changes the picture in Cycles and not here."""
         m = material()

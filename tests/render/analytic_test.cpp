@@ -209,6 +209,39 @@ Shape "trianglemesh" "point3 P" [ -9 -9 2  9 -9 2  9 9 2  -9 9 2 ] "integer indi
     expect_mean(render_text(text + pane, uniform(1024)), 0.75 / M_PI, 0.01);
 }
 
+TEST(Analytic, SoftLampsAreAsBrightThroughPanesByAllEstimators) {
+    // A pane that neither reflects nor turns light is as good as none, whichever of the paths and
+    // the lights sampled through it find the lamp
+    const auto light = [](const std::string& pane, const std::string& roughness) {
+        return summarize_image(render_text(R"(
+Integrator "path" "integer maxdepth" 3
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+LookAt 0 -1.2 0.35  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+AttributeBegin
+Translate 0 0.5 1.1
+AreaLightSource "diffuse" "rgb L" [ 5 5 5 ] "bool softfalloff" true "bool letslightpass" true
+Shape "sphere" "float radius" 0.5
+AttributeEnd
+Material )" + pane + R"(
+Shape "trianglemesh" "point3 P" [ -3 -3 .55  3 -3 .55  3 3 .55  -3 3 .55 ]
+    "integer indices" [ 0 1 2 0 2 3 ]
+Material "conductor" "rgb reflectance" [ 0.8 0.8 0.8 ] "bool remaproughness" false
+    "float roughness" )" + roughness + R"(
+Shape "trianglemesh" "point3 P" [ -3 -3 0  3 -3 0  3 3 0  -3 3 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+)",
+                                           uniform(64))
+                                   .image)
+            .mean;
+    };
+    for (const char* roughness : {"0.3", "0.05", "0.01"})
+        EXPECT_NEAR(light("\"thindielectric\" \"float eta\" 1.0001", roughness) /
+                        light("\"interface\"", roughness),
+                    1, 0.03)
+            << roughness;
+}
+
 TEST(Analytic, MethodsAgreeOnAnUntexturedFurnace) {
     const std::string text = kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
 Material "diffuse" "rgb reflectance" [ 1 1 1 ]

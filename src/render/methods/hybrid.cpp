@@ -269,37 +269,40 @@ class HybridRender {
     /// Keeps time for the reconstruction and for writing the image. The denoiser is given up where
     /// there is too little time for a reconstruction with it.
     void reserve_time() {
-        double seconds = seconds_to_end();
-        if (denoiser_ && seconds > job_.tracing_end() - job_.monitor.elapsed()) {
-            denoiser_.reset();
-            is_denoiser_too_slow_ = true;
-            seconds = seconds_to_end();
-        }
-        job_.reserve(seconds);
-    }
-
-    /// Seconds that the reconstruction of this image and writing it will take, by those of a part
-    /// of it. They decide when to stop and nothing else.
-    double seconds_to_end() {
-        constexpr int kTinySide = 16, kSide = 96;
+        if (!job_.delivers()) return;
         // Seconds of writing over those of the reconstruction beside the denoiser: 0.28 to 0.36 at
         // 400x300, 960x540 and 1920x1080
         constexpr double kWriting = 0.35;
-        time_part(kTinySide);  // starts the denoiser, which takes as long as a part
-        PartTime part = time_part(kSide);
-        // Other work of the machine makes one time in a few much longer
-        for (int i = 0; i < 2; ++i) {
-            const PartTime again = time_part(kSide);
-            part.denoiser = std::min(part.denoiser, again.denoiser);
-            part.rest = std::min(part.rest, again.rest);
-        }
-        return (part.denoiser + (1 + kWriting) * part.rest) * double(size()) / part.pixels;
+        const PartTime part = least_part_time();
+        const double parts = double(size()) / part.pixels,
+                     rest = (1 + kWriting) * part.rest * parts,
+                     with_denoiser = rest + part.denoiser * parts;
+        is_denoiser_too_slow_ =
+            denoiser_ && with_denoiser > job_.tracing_end() - job_.monitor.elapsed();
+        if (is_denoiser_too_slow_) denoiser_.reset();
+        job_.reserve(is_denoiser_too_slow_ ? rest : with_denoiser);
     }
 
     struct PartTime {
         double pixels = 0;
         double denoiser = 0, rest = 0;  ///< seconds
     };
+
+    /// Times the reconstruction of a part of the image, and of a large image the least of three
+    /// times, as other work of the machine makes one in a few much longer. The times decide when to
+    /// stop and nothing else.
+    PartTime least_part_time() {
+        constexpr int kTinySide = 16, kSide = 96;
+        constexpr size_t kLarge = 10 * kSide * kSide;  // pixels
+        if (denoiser_) time_part(kTinySide);  // to start the denoiser takes as long as a part
+        PartTime least = time_part(kSide);
+        for (int i = 0; i < 2 && size() >= kLarge; ++i) {
+            const PartTime again = time_part(kSide);
+            least.denoiser = std::min(least.denoiser, again.denoiser);
+            least.rest = std::min(least.rest, again.rest);
+        }
+        return least;
+    }
 
     /// Times the reconstruction of the middle of the image, at most `side` pixels wide and high.
     PartTime time_part(int side) {
