@@ -325,7 +325,7 @@ class HybridRender {
                 spectrum.push_back(prediction_->spectrum[from]);
             }
         Halves halves = halves_of(films);
-        // What is 0 everywhere takes the denoiser no time
+        // Planes of zeros take the denoiser no time
         for (HalfBuffer& half : halves)
             for (float* v : {&half.color[0][0], &half.feature[0][0], &half.feature[3][0]})
                 *v = std::max(*v, 1.0f);
