@@ -17,19 +17,21 @@ METRICS = {
 }
 
 
-IS_PERMUTED = bpy.app.version >= (5, 0, 0)  # whether cells have the numbers of Blender 5
+def _is_permuted():
+    """Whether cells have the numbers of Blender 5."""
+    return bpy.app.version >= (5, 0, 0)
 
 
 def _point_in(cells):
     """d arrays in [0, 1]: the points of cells, d arrays (m,) of whole numbers."""
-    if IS_PERMUTED:
+    if _is_permuted():
         return permuted_numbers(*cells)
     return hashed_numbers(*(axis.astype(np.float32) for axis in cells))[:len(cells)]
 
 
 def _colour_of(cells):
     """Three arrays in [0, 1], of the same cells."""
-    if IS_PERMUTED:
+    if _is_permuted():
         return permuted_numbers(*cells, *(np.zeros_like(cells[0]),) * (3 - len(cells)))
     return hashed_numbers(*(axis.astype(np.float32) for axis in cells))
 
