@@ -1,18 +1,10 @@
 """Atlases of bodies, without Blender: each place of a surface has a texel that shows it."""
 
-import os
-import pathlib
-import sys
-import types
 import unittest
 
 import numpy as np
 
-# As a package whose beginning, which needs Blender, is not run.
-package = types.ModuleType("covtrace_blender")
-package.__path__ = [str(pathlib.Path(os.environ["COVTRACE_SOURCE"], "blender/covtrace_blender"))]
-sys.modules["covtrace_blender"] = package
-
+import without_blender  # before the package
 from covtrace_blender import body_baking, charts
 from covtrace_blender.atlas import Atlas
 

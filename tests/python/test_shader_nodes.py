@@ -1,32 +1,11 @@
 """The values of Blender's shader nodes, and their images, without Blender: nodes are plain objects with its attributes."""
 
-import os
-import pathlib
-import sys
 import types
 import unittest
 
 import numpy as np
 
-# As a package whose beginning, which needs Blender, is not run.
-package = types.ModuleType("covtrace_blender")
-package.__path__ = [str(pathlib.Path(os.environ["COVTRACE_SOURCE"], "blender/covtrace_blender"))]
-sys.modules["covtrace_blender"] = package
-
-
-class Rec709Color(tuple):
-    """Blender's Color where the scene's linear space is Rec.709."""
-
-    def from_rec709_linear_to_scene_linear(self):
-        return self
-
-    from_scene_linear_to_rec709_linear = from_rec709_linear_to_scene_linear
-
-
-# What the nodes ask of Blender: its version, and colours between its spaces.
-sys.modules["bpy"] = types.SimpleNamespace(app=types.SimpleNamespace(version=(4, 5, 0)))
-sys.modules["mathutils"] = types.SimpleNamespace(Color=Rec709Color)
-
+import without_blender  # before the package
 from covtrace_blender import baking
 from covtrace_blender.shader_nodes import hashing, images, noise, voronoi
 from covtrace_blender.shader_nodes.evaluator import Evaluator
