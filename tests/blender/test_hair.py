@@ -1,7 +1,11 @@
 """Principled Hair of the add-on against Cycles."""
 
+import math
+import unittest
+
 import bpy
-from addon_support import BlenderTest, mean, render
+from addon_support import BlenderTest, CyclesTest, mean, render
+from mathutils import Vector
 
 
 class HairTest(BlenderTest):
@@ -51,3 +55,39 @@ class HairTest(BlenderTest):
         self.hair.model = "HUANG"
         self.export()
         self.assertTrue(any("Huang" in w and "Chiang" in w for w in self.warnings), self.warnings)
+
+
+@unittest.skipIf(bpy.app.version < (4, 2, 0), "no curves by script before Blender 4.2")
+class StrandTest(CyclesTest):
+    """One thick strand along z, and light that is scattered once."""
+
+    def setUp(self):
+        super().setUp()
+        hair = self.shader("BsdfHairPrincipled")
+        node = next(n for n in hair.node_tree.nodes if n.type == "BSDF_HAIR_PRINCIPLED")
+        node.parametrization, node.model = "ABSORPTION", "CHIANG"
+        node.inputs["Absorption Coefficient"].default_value = (0.1, 0.3, 1)
+        self.offset = node.inputs["Offset"]
+        curves = bpy.data.hair_curves.new("strand")
+        curves.add_curves([2])
+        for point, z in zip(curves.points, (-3, 3)):
+            point.position, point.radius = (0, 0, z), 0.3
+        curves.materials.append(hair)
+        self.scene.collection.objects.link(bpy.data.objects.new("strand", curves))
+        self.camera.location, self.camera.rotation_euler = (0, -5, 0), (math.pi / 2, 0, 0)
+        self.camera.data.type, self.camera.data.ortho_scale = "ORTHO", 1
+        for kind in ("max", "diffuse", "glossy", "transmission"):
+            setattr(self.scene.cycles, f"{kind}_bounces", 0)
+        self.scene.covtrace.max_depth = 1
+        self.scene.cycles_curves.shape = "THICK"
+        self.sun = self.lamp("SUN", energy=1, angle=math.radians(2))
+
+    def test_is_as_bright_as_in_cycles_from_all_sides(self):
+        for degrees in (0, 5):  # of the scales, whose sign the light from above and below tells
+            self.offset.default_value = math.radians(degrees)
+            for place in ((0, -1, 0), (1, -1, 0), (1, 0, 0), (0, 1, 1e-4), (0, -1, 1), (0, -1, -1), (0.5, 1, 0.7), (0.5, 1, -0.7)):
+                self.sun.rotation_euler = Vector(place).to_track_quat("Z", "Y").to_euler()
+                ours, theirs = (mean(render(engine, 64)) for engine in ("COVTRACE", "CYCLES"))
+                with self.subTest(degrees=degrees, place=place):
+                    for a, b in zip(ours, theirs):
+                        self.assertAlmostEqual(a / b, 1, delta=0.04, msg=f"{ours} against {theirs}")
