@@ -48,7 +48,9 @@ int denoise_images(DenoiseArguments a) {
         restore_layer_names(images.back().image);
     }
     const FoundDenoiser denoiser = find(a.denoiser);
-    const DenoisedImage result = denoise(images, {a.layers, a.samples, denoiser.denoiser.get()});
+    const DenoisedImage result =
+        denoise(images, {a.layers, a.samples, denoiser.denoiser.get(),
+                         a.denoiser.quality.value_or(DenoiserQuality::high)});
     if (!a.quiet) {
         warn_of_unusable(denoiser);
         warn_of_config(a.display.options);
@@ -71,8 +73,7 @@ int denoise_images(DenoiseArguments a) {
 void add_denoise(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<DenoiseArguments>();
     CLI::App* c = app.add_subcommand("denoise", "Reconstruct the image of another renderer");
-    c->add_option("IMAGE", a->images,
-                  "two renders that differ by their seeds, or one with its variance")
+    c->add_option("IMAGE", a->images, "two renders with different seeds, or one with variance")
         ->required()
         ->take_all()
         ->option_text(" ");

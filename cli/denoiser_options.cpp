@@ -10,6 +10,7 @@ namespace covtrace::cli {
 
 void add_denoiser_options(CLI::App* c, DenoiserArguments& a) {
     add_choice(c, "--denoiser", a.choice, "hybrid: Open Image Denoise, too");
+    add_choice(c, "--denoiser-quality", a.quality, "fast: the denoiser alone, in little time");
     c->add_option("--denoiser-library", a.library, "its file: libOpenImageDenoise.so.2")
         ->check(not_empty())
         ->option_text("FILE");
@@ -27,6 +28,12 @@ FoundDenoiser find(const DenoiserArguments& a) {
 
 void warn_of_unusable(const FoundDenoiser& found) {
     if (found.is_unusable) say("warning: no denoiser is used: {}\n", found.why_none);
+}
+
+bool is_denoised_fast(const Image& image) {
+    const auto quality = image.metadata.find("covtrace:denoiserQuality");
+    return quality != image.metadata.end() &&
+           std::get<std::string>(quality->second) == name_of(DenoiserQuality::fast);
 }
 
 void warn_of_failed_denoiser(const Image& image) {

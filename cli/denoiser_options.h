@@ -13,6 +13,7 @@ namespace covtrace::cli {
 struct DenoiserArguments {
     std::optional<DenoiserChoice> choice;  ///< empty: automatic
     std::string library;                   ///< file of the library; empty: looked for
+    std::optional<DenoiserQuality> quality;
 };
 
 /// Adds the options to a command; `arguments` must outlive the parser.
@@ -24,6 +25,8 @@ FoundDenoiser find(const DenoiserArguments& arguments);
 
 /// Warns of a denoiser that was found and cannot be used.
 void warn_of_unusable(const FoundDenoiser& found);
+/// Whether the image is a denoiser's of fast quality.
+bool is_denoised_fast(const Image& image);
 /// Warns of a denoiser that failed while the image was made.
 void warn_of_failed_denoiser(const Image& image);
 

@@ -100,6 +100,7 @@ std::string origin(const Image& image) {
                                              {"spp", ", ", " samples per pixel"},
                                              {"covtrace:seed", ", seed ", ""},
                                              {"covtrace:denoiser", ", ", ""},
+                                             {"covtrace:denoiserQuality", ", ", " quality"},
                                              {"covtrace:seconds", ", ", " s"}})
         if (const std::string value = metadata_text(image, key); !value.empty())
             text += before + value + after;

@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", "covtrace " + std::string(covtrace::kVersion) + " (" +
                                           std::string(covtrace::kCommit) + ")");
     app.require_subcommand(1);
-    app.get_formatter()->column_width(30);
+    app.get_formatter()->column_width(31);
     // The last one of an option given twice holds, so that scripts and aliases can be added to.
     // Commands inherit this; lists take all (take_all).
     app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);

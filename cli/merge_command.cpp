@@ -57,7 +57,8 @@ int merge_films(MergeArguments a) {
     if (makes_image) {
         const FoundDenoiser denoiser =
             state.method == Method::hybrid ? find(a.denoiser) : FoundDenoiser{};
-        Image image = develop(state, denoiser.denoiser.get());
+        Image image = develop(state, denoiser.denoiser.get(),
+                              a.denoiser.quality.value_or(DenoiserQuality::high));
         if (!a.quiet) {
             warn_of_unusable(denoiser);
             warn_of_config(a.display.options);

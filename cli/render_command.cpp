@@ -63,8 +63,7 @@ void write_text(const std::string& text, const fs::path& path) {
 
 void parse_texts(RenderArguments& a) {
     if (!a.seconds.empty()) a.options.seconds = parse_duration("--time", a.seconds);
-    if (a.preset && !a.denoiser.choice && !values_of(*a.preset).denoises)
-        a.denoiser.choice = DenoiserChoice::none;
+    a.options.denoiser_quality = a.denoiser.quality;
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
     request_layers(a.layers, a.options);
     request_layers(a.tev_layers, a.options);
@@ -173,12 +172,12 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
     if (a.quiet) return;
     warn_of_failed_denoiser(result.image);
     warn_of_darkness(dark);
-    say("{}: {:.4g} samples per pixel{} in {:.1f} s\n",
+    say("{}: {:.4g} samples per pixel{} in {:.1f} s{}\n",
         a.film.shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
         result.statistics.density_factor
             ? fmt::format(" (k = {:.4g})", *result.statistics.density_factor)
             : "",
-        monitor.elapsed());
+        monitor.elapsed(), is_denoised_fast(result.image) ? ", denoised fast" : "");
 }
 
 /// Tells what of the options and of the scene is not done as they say.

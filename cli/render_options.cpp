@@ -20,7 +20,7 @@ void add_method_options(CLI::App* c, RenderArguments& a) {
     c->add_option_function<std::string>(
          "--cov-spp",
          [&a](const std::string& text) { a.options.cov_spp = parse_paths("--cov-spp", text); },
-         "covariance paths per pixel (default: 2, hybrid: 1)")
+         "covariance paths per pixel (default 2, hybrid 1)")
         ->option_text("N");
     add_choice(c, "--density", a.options.density, "how counts follow from the prediction");
     add_positive(c, "--k", a.options.density_factor, 1e12,

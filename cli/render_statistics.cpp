@@ -25,14 +25,19 @@ nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result)
     return memory;
 }
 
-/// Name and file of the denoiser that was used, or the reason why there is none; null where none is
-/// needed.
+/// Name, file and quality of the denoiser that was used, or the reason why there is none; null
+/// where none is needed.
 nlohmann::json denoiser_json(const FoundDenoiser& found, const Metadata& image) {
     const auto failure = image.find("covtrace:denoiserFailure");
     if (failure != image.end())
         return {{"why_none", std::get<std::string>(failure->second)},
                 {"file", found.library.string()}};
-    if (found.denoiser) return {{"name", found.denoiser->name()}, {"file", found.library.string()}};
+    if (found.denoiser) {
+        nlohmann::json used{{"name", found.denoiser->name()}, {"file", found.library.string()}};
+        const auto quality = image.find("covtrace:denoiserQuality");
+        if (quality != image.end()) used["quality"] = std::get<std::string>(quality->second);
+        return used;
+    }
     if (!found.why_none.empty()) return {{"why_none", found.why_none}};
     return nullptr;
 }

@@ -52,6 +52,7 @@ py::tuple denoise_images(const std::vector<std::tuple<std::string, SharedPlanes,
                       layer("depth")};
     options.samples = positive<float>(o, "samples", 1);
     const DenoiserSearch search = denoiser_search(o);
+    options.quality = denoiser_quality(o).value_or(DenoiserQuality::high);
     const int threads = thread_count(o);
     DenoisedImage result;
     FoundDenoiser denoiser;

@@ -66,7 +66,7 @@ struct Merged {
 
 Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
                    const std::optional<LayerSelection>& layers, const DenoiserSearch& search,
-                   bool makes_image, int threads) {
+                   DenoiserQuality quality, bool makes_image, int threads) {
     const ThreadLimit limit(threads);
     FilmMerge merge;
     for (const fs::path& file : films) merge.add(file.string(), read_film(file));
@@ -84,7 +84,7 @@ Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
     const FoundDenoiser denoiser =
         state.method == Method::hybrid ? find_denoiser(search) : FoundDenoiser{};
     Image& image = merged.image;
-    image = develop(state, denoiser.denoiser.get());
+    image = develop(state, denoiser.denoiser.get(), quality);
     const auto warn = [&](const std::string& text) { merged.warnings.push_back({{}, text}); };
     if (denoiser.is_unusable) warn("no denoiser is used: " + denoiser.why_none);
     RenderOptions of_films;
@@ -103,6 +103,7 @@ Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
 py::tuple merge(const std::vector<fs::path>& films, const py::dict& o) {
     const std::optional<LayerSelection> layers = layer_selection(o);
     const DenoiserSearch search = denoiser_search(o);
+    const DenoiserQuality quality = denoiser_quality(o).value_or(DenoiserQuality::high);
     const bool makes_image = value_of<bool>(o, "image", "True or False");
     const int threads = thread_count(o);
     const fs::path film =
@@ -110,7 +111,7 @@ py::tuple merge(const std::vector<fs::path>& films, const py::dict& o) {
     Merged merged;
     {
         const Unlocked unlocked;
-        merged = merge_films(films, film, layers, search, makes_image, threads);
+        merged = merge_films(films, film, layers, search, quality, makes_image, threads);
     }
     py::dict statistics;
     statistics["spp"] = merged.samples;

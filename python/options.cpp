@@ -15,6 +15,7 @@ RenderOptions render_options(const py::dict& o) {
     r.method = choice<Method>("method", text("method"));
     r.density = choice<DensityRule>("density", text("density"));
     r.occlusion = choice<Occlusion>("occlusion", text("occlusion"));
+    r.denoiser_quality = denoiser_quality(o);
     r.guides = choice<Guides>("guides", text("guides"));
     r.brdf_covariance = choice<BrdfCovariance>("brdf_covariance", text("brdf_covariance"));
     r.texture_bandwidth = choice<TextureBandwidth>("texture_bandwidth", text("texture_bandwidth"));
@@ -40,15 +41,18 @@ std::optional<Preset> preset(const py::dict& o) {
     return choice<Preset>("preset", value_of<std::string>(o, "preset", "a text"));
 }
 
+std::optional<DenoiserQuality> denoiser_quality(const py::dict& o) {
+    if (!is_given(o, "denoiser_quality")) return std::nullopt;
+    return choice<DenoiserQuality>("denoiser_quality",
+                                   value_of<std::string>(o, "denoiser_quality", "a text"));
+}
+
 DenoiserSearch denoiser_search(const py::dict& o) {
     namespace fs = std::filesystem;
     DenoiserSearch search;
-    const std::optional<Preset> bundle = preset(o);
     if (is_given(o, "denoiser"))
         search.choice =
             choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"));
-    else if (bundle && !values_of(*bundle).denoises)
-        search.choice = DenoiserChoice::none;
     if (is_given(o, "denoiser_library"))
         search.library = value_of<fs::path>(o, "denoiser_library", "a file's path");
     Dl_info module{};

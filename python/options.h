@@ -68,6 +68,7 @@ std::optional<T> positive(const py::dict& options, const char* name, double leas
 
 RenderOptions render_options(const py::dict& o);
 std::optional<Preset> preset(const py::dict& o);
+std::optional<DenoiserQuality> denoiser_quality(const py::dict& o);
 /// The search for the denoiser; its folders are those around the module's own file.
 DenoiserSearch denoiser_search(const py::dict& o);
 SceneOverrides scene_overrides(const py::dict& o);

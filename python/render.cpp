@@ -104,6 +104,7 @@ struct Rendered {
     Warnings warnings;
     FoundDenoiser denoiser;
     std::string denoiser_failure;  ///< failure while the image was made
+    std::string denoiser_quality;  ///< empty where no image was made with one
     std::optional<ReplacedPixels> replaced;
     std::map<std::string, GuideOutcome> guides;
     double building = 0;  ///< seconds from the description to what is rendered
@@ -162,6 +163,10 @@ Rendered render_description(SceneDescription description, RenderOptions options,
         failure = std::get<std::string>(it->second);
         warnings.push_back({{}, "the image is without the denoiser: " + failure});
     }
+    std::string quality;
+    if (const auto it = result.image.metadata.find("covtrace:denoiserQuality");
+        it != result.image.metadata.end())
+        quality = std::get<std::string>(it->second);
     const std::optional<ReplacedPixels> replaced = replaced_pixels(result.image.metadata);
     if (replaced) warnings.push_back({{}, describe(*replaced)});
     if (const double dark = dark_share(result.image); dark >= kMostlyDark)
@@ -174,6 +179,7 @@ Rendered render_description(SceneDescription description, RenderOptions options,
             std::move(warnings),
             std::move(denoiser),
             std::move(failure),
+            std::move(quality),
             replaced,
             scene.guide_outcomes(),
             building};
@@ -198,6 +204,7 @@ py::object denoiser_object(const Rendered& r) {
         d["why_none"] = r.denoiser_failure.empty() ? r.denoiser.why_none : r.denoiser_failure;
     else
         d["name"] = r.denoiser.denoiser->name();
+    if (!r.denoiser_quality.empty()) d["quality"] = r.denoiser_quality;
     if (!r.denoiser.library.empty()) d["file"] = r.denoiser.library.string();
     return r.denoiser.denoiser || !r.denoiser.why_none.empty() ? py::object(d) : py::none();
 }

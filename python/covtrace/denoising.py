@@ -61,6 +61,7 @@ def denoise(color: Picture | Sequence[Picture], albedo: Feature = None, normal: 
             depth: Feature = None, variance: Feature = None, *, layer: str | None = None,
             samples: float | None = None,
             denoiser: Literal["auto", "oidn", "none"] | None = None,
+            denoiser_quality: Literal["high", "fast"] | None = None,
             denoiser_library: str | os.PathLike[str] | None = None, threads: int = 0) -> Image:
     """Reconstructs a picture that another renderer has made, as `covtrace denoise` does.
 
@@ -79,7 +80,7 @@ def denoise(color: Picture | Sequence[Picture], albedo: Feature = None, normal: 
     """
     pictures = _pictures(color)
     options: dict[str, Any] = {
-        "color": layer, "samples": samples, "denoiser": denoiser, "preset": None,
+        "color": layer, "samples": samples, "denoiser": denoiser, "denoiser_quality": denoiser_quality, "preset": None,
         "denoiser_library": None if denoiser_library is None
         else path_of("denoiser_library", denoiser_library), "threads": threads}
     additions: list[list[tuple[str, Array]]] = [[] for _ in pictures]

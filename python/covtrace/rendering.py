@@ -49,6 +49,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            filter: Literal["verified", "predicted", "matched", "thesis"] = "verified", progressive: bool = False,
            even_counts: bool = False,
            denoiser: Literal["auto", "oidn", "none"] | None = None,
+           denoiser_quality: Literal["high", "fast"] | None = None,
            denoiser_library: str | os.PathLike[str] | None = None,
            guides: Literal["auto", "none"] = "auto",
            resolution: tuple[int, int] | str | None = None,
@@ -75,7 +76,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     """Renders a scene into an `Image`.
 
     scene: path of a pbrt-v4 or glTF 2.0 file, `Scene`, or `SceneBuilder`.
-    preset: "draft" (4 samples, a depth of at most 4, no denoiser), "preview" (32 samples, a depth of
+    preset: "draft" (4 samples, a depth of at most 4, denoised fast), "preview" (32 samples, a depth of
         at most 8) or "final" (512 samples), where the other arguments leave these open.
     method: "uniform" (the plain path tracer), "covariance" (the method of Belcour
         2012, section 5.1) or "hybrid".
@@ -84,7 +85,9 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     k: with density "thesis", one more budget: k sqrt|S| samples in each pixel, whatever their mean;
         `image.statistics["k"]` tells it where another budget decided.
     denoiser, denoiser_library: whether "hybrid" has Open Image Denoise as one more filter, "auto" (the
-        default, but for drafts) where it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
+        default) where it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
+    denoiser_quality: "high", or "fast": the denoiser alone, in a sixth of its time; by default "high", but
+        where `time` is short "fast".
     resolution (w, h) or "640x360", crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
@@ -127,7 +130,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "max_spp": max_spp, "max_depth": max_depth, "density": density, "k": k,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
                "texture_bandwidth": texture_bandwidth, "filter": filter,
-               "progressive": progressive, "even_counts": even_counts, "denoiser": denoiser,
+               "progressive": progressive, "even_counts": even_counts, "denoiser": denoiser, "denoiser_quality": denoiser_quality,
                "guides": guides,
                "denoiser_library": None if denoiser_library is None
                else path_of("denoiser_library", denoiser_library),

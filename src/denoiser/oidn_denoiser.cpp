@@ -120,6 +120,11 @@ struct OidnDenoiser::Impl {
         const char* name;
         Pixels& pixels;
     };
+    struct FilterSettings {
+        oidn::Quality quality;
+        bool hdr = false;
+        bool clean_features = false;
+    };
     struct Release {
         const oidn::Api* api;
         void operator()(oidn::Filter f) const { api->release_filter(f); }
@@ -129,7 +134,7 @@ struct OidnDenoiser::Impl {
     using Filters = std::vector<std::unique_ptr<oidn::OIDNFilterImpl, Release>>;
     /// Denoises the first input in place, guided by the others, by a filter that it leaves in
     /// `filters`.
-    void filter(const std::vector<Input>& inputs, bool hdr, oidn::Quality quality,
+    void filter(const std::vector<Input>& inputs, const FilterSettings& settings,
                 Filters& filters) const {
         filters.emplace_back(api.new_filter(device, "RT"), Release{&api});
         const oidn::Filter f = filters.back().get();
@@ -139,10 +144,9 @@ struct OidnDenoiser::Impl {
         };
         for (const Input& input : inputs) set(input.name, input.pixels);
         set("output", inputs.begin()->pixels);
-        if (hdr) api.set_filter_bool(f, "hdr", true);
-        // The library has weights for features without noise where it gets both of them.
-        if (inputs.size() == 3) api.set_filter_bool(f, "cleanAux", true);
-        api.set_filter_int(f, "quality", quality);
+        if (settings.hdr) api.set_filter_bool(f, "hdr", true);
+        if (settings.clean_features) api.set_filter_bool(f, "cleanAux", true);
+        api.set_filter_int(f, "quality", settings.quality);
         api.set_filter_int(f, "maxMemoryMB", kMostMegabytes);
         api.commit_filter(f);
         api.execute_filter(f);
@@ -165,13 +169,15 @@ OidnDenoiser::~OidnDenoiser() = default;
 std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
                                                std::vector<NoisyImage> images) const try {
     Pixels albedo(features.albedo, InputRange()), normal(features.normal, InputRange());
-    const oidn::Quality quality = features.draft ? oidn::kBalanced : oidn::kHigh;
     // The library takes normals only beside an albedo.
     const bool has_albedo = is_known(features.albedo),
-               has_normal = has_albedo && is_known(features.normal);
+               has_normal = has_albedo && is_known(features.normal),
+               cleans = features.cleaning != FeatureCleaning::none;
+    const oidn::Quality quality =
+        features.cleaning == FeatureCleaning::draft ? oidn::kBalanced : oidn::kHigh;
     Impl::Filters filters;
-    if (has_albedo) impl_->filter({{"albedo", albedo}}, false, quality, filters);
-    if (has_normal) impl_->filter({{"normal", normal}}, false, quality, filters);
+    if (cleans && has_albedo) impl_->filter({{"albedo", albedo}}, {.quality = quality}, filters);
+    if (cleans && has_normal) impl_->filter({{"normal", normal}}, {.quality = quality}, filters);
     bool turned = false;
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {
@@ -191,7 +197,12 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
         std::vector<Impl::Input> inputs{{"color", color}};
         if (has_albedo) inputs.push_back({"albedo", albedo});
         if (has_normal) inputs.push_back({"normal", normal});
-        impl_->filter(inputs, true, image.draft ? impl_->draft : oidn::kHigh, filters);
+        // The library has weights for features without noise where it gets both of them.
+        impl_->filter(inputs,
+                      {.quality = image.draft ? impl_->draft : oidn::kHigh,
+                       .hdr = true,
+                       .clean_features = cleans && has_normal},
+                      filters);
         results.push_back(color.planes());
         image = {};
     }

@@ -11,7 +11,8 @@
 namespace covtrace {
 
 /// Open Image Denoise 2 where its library is found while the program runs: the filter for ray
-/// tracing, HDR, at high quality, with albedo and normal that it has freed of noise before.
+/// tracing, HDR, at high quality, with albedo and normal that it has freed of noise before where
+/// that is asked for.
 class OidnDenoiser : public Denoiser {
   public:
     /// Loads the library `file`: a path, or a bare name that the dynamic linker looks for. It uses

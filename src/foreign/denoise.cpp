@@ -179,6 +179,15 @@ ImageHalves halves_of(std::span<const NamedImage> images, std::span<SampledImage
     return images.size() == 1 ? halves_of_one(samples[0]) : halves_of_two(samples[0], samples[1]);
 }
 
+void tell_denoiser(const DenoiseOptions& options, const HybridImage& mixed, Image& image) {
+    if (!mixed.denoiser_failure.empty()) {
+        image.metadata["covtrace:denoiserFailure"] = mixed.denoiser_failure;
+    } else if (options.denoiser) {
+        image.metadata["covtrace:denoiser"] = options.denoiser->name();
+        image.metadata["covtrace:denoiserQuality"] = std::string(name_of(options.quality));
+    }
+}
+
 }  // namespace
 
 DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& options) {
@@ -210,15 +219,13 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
     const float exposure = samples[0].exposure;
     HybridSettings settings;
     settings.denoiser = options.denoiser;
+    settings.quality = options.quality;
     settings.noise = HalvesNoise::independent;
     std::optional<PhasedDenoiser> phased;
     if (options.denoiser && neighbours_correlation(halves) > kShared)
         settings.denoiser = &phased.emplace(*options.denoiser);
     HybridImage mixed = reconstruct(std::move(halves), {}, settings);
-    if (!mixed.denoiser_failure.empty())
-        image.metadata["covtrace:denoiserFailure"] = mixed.denoiser_failure;
-    else if (options.denoiser)
-        image.metadata["covtrace:denoiser"] = options.denoiser->name();
+    tell_denoiser(options, mixed, image);
 
     result.error = relative_error(mixed);
     add_channels(std::move(mixed.color), "", exposure, image);

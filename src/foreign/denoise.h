@@ -21,6 +21,7 @@ struct DenoiseOptions {
     LayerNaming layers;
     std::optional<float> samples;  ///< samples per pixel of each image; empty: as the images say
     const Denoiser* denoiser = nullptr;  ///< one more candidate; null: none
+    DenoiserQuality quality = DenoiserQuality::high;
 };
 
 struct DenoisedImage {

@@ -3,20 +3,37 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "reconstruction/half_buffer.h"
 
 namespace covtrace {
+
+/// The part that a denoiser has in an image.
+enum class DenoiserQuality : uint8_t {
+    high,  ///< the best that it can, mixed with our own candidates
+    fast,  ///< the whole image, in a sixth of the time (docs/decisions/0147)
+};
+
+template <>
+inline constexpr auto kEnumNames<DenoiserQuality> =
+    enum_names<DenoiserQuality>({{DenoiserQuality::high, "high"}, {DenoiserQuality::fast, "fast"}});
+
+/// How features are freed of their noise before they guide a denoiser.
+enum class FeatureCleaning : uint8_t {
+    thorough,
+    draft,  ///< in about a third of the time, and a little less well
+    none,   ///< not at all: the denoiser takes them as they are, and itself a third of its time
+};
 
 /// Features of the surfaces that a denoiser is told of: albedo in [0, 1], normals in [-1, 1], with
 /// the noise of lens and shutter. A feature that is 0 everywhere is not known.
 struct NoisyFeatures {
     std::array<Plane, 3> albedo, normal;
-    /// Whether the features are freed of their noise in about a third of the time, and a little
-    /// less well.
-    bool draft = false;
+    FeatureCleaning cleaning = FeatureCleaning::thorough;
 };
 
 struct NoisyImage {

@@ -1,17 +1,10 @@
 /// The blend of our own mixture and the denoiser's image.
 #pragma once
 
-#include "reconstruction/half_buffer.h"
+#include "reconstruction/denoised.h"
 #include "reconstruction/likeness.h"
 
 namespace covtrace {
-
-/// Results of a denoiser for each half, and for all samples together.
-struct Denoised {
-    std::array<ColorPlanes, 2> half;
-    ColorPlanes whole;       ///< mean of the results for both sights, upright and turned
-    ColorPlanes difference;  ///< difference of the results for the two sights
-};
 
 /// Data by which the denoiser is judged against our own mixture.
 struct BlendInput {

@@ -1,8 +1,28 @@
 #include "reconstruction/half_buffer.h"
 
 #include <algorithm>
+#include <span>
 
 namespace covtrace {
+
+namespace {
+
+/// The mean of three planes of both halves.
+std::array<Plane, 3> mean_of(const Halves& halves, std::span<const Plane, 3> of_a,
+                             std::span<const Plane, 3> of_b, CountBy by) {
+    const Plane &a = halves[0].count, &b = halves[1].count;
+    std::array<Plane, 3> mean{of_a[0], of_a[1], of_a[2]};
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < mean[c].size(); ++i) {
+            const bool both = a[i] > 0 && b[i] > 0, none = !(a[i] > 0 || b[i] > 0);
+            const float share =
+                none || (both && by == CountBy::halves) ? 0.5f : a[i] / (a[i] + b[i]);
+            mean[c][i] = share * mean[c][i] + (1 - share) * of_b[c][i];
+        }
+    return mean;
+}
+
+}  // namespace
 
 HalfBuffer::HalfBuffer(int w, int h) : count(w, h) {
     for (auto* planes : {&color, &color_variance}) planes->fill(Plane(w, h));
@@ -53,6 +73,17 @@ void replace_empty_half(Halves& halves) {
             halves[k] = halves[1 - k];
             halves[k].count = none;  // without samples it judges nothing
         }
+}
+
+ColorPlanes mean_color(const Halves& halves, CountBy by) {
+    return mean_of(halves, halves[0].color, halves[1].color, by);
+}
+
+std::array<Plane, 3> mean_features(const Halves& halves, size_t first, CountBy by) {
+    const auto three = [&](size_t half) {
+        return std::span<const Plane, 3>(&halves[half].feature[first], 3);
+    };
+    return mean_of(halves, three(0), three(1), by);
 }
 
 void set_variance_from_difference(Halves& halves) {

@@ -8,6 +8,7 @@
 #include "core/display_exposure.h"
 #include "core/error.h"
 #include "core/vec.h"
+#include "reconstruction/denoised.h"
 #include "reconstruction/denoiser_blend.h"
 #include "reconstruction/guides.h"
 #include "reconstruction/luminance.h"
@@ -19,40 +20,6 @@
 namespace covtrace {
 
 namespace {
-
-/// Weights of the two halves of a pixel in a mean.
-enum class CountBy : uint8_t {
-    halves,   ///< equally: the samples of one half have planned how many the other one has
-    samples,  ///< as many samples as they have: right where no samples have been planned by others
-};
-
-/// The mean of three planes of both halves; where one half has no samples, what the other has.
-ColorPlanes mean_of(const Halves& halves, std::span<const Plane, 3> of_a,
-                    std::span<const Plane, 3> of_b, CountBy by) {
-    const Plane &a = halves[0].count, &b = halves[1].count;
-    ColorPlanes mean{of_a[0], of_a[1], of_a[2]};
-    for (size_t c = 0; c < 3; ++c)
-        for (size_t i = 0; i < mean[c].size(); ++i) {
-            const bool both = a[i] > 0 && b[i] > 0, none = !(a[i] > 0 || b[i] > 0);
-            const float share =
-                none || (both && by == CountBy::halves) ? 0.5f : a[i] / (a[i] + b[i]);
-            mean[c][i] = share * mean[c][i] + (1 - share) * of_b[c][i];
-        }
-    return mean;
-}
-
-/// The mean of both halves' samples.
-ColorPlanes mean_of(const Halves& halves, CountBy by = CountBy::halves) {
-    return mean_of(halves, halves[0].color, halves[1].color, by);
-}
-
-/// The mean of both halves' features from `first` on.
-ColorPlanes mean_of_features(const Halves& halves, size_t first, CountBy by) {
-    const auto three = [&](size_t half) {
-        return std::span<const Plane, 3>(&halves[half].feature[first], 3);
-    };
-    return mean_of(halves, three(0), three(1), by);
-}
 
 /// 1 where both halves have samples, and can judge each other, 0 where one of them has, averaged
 /// over a few pixels around.
@@ -131,40 +98,39 @@ void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& i
     }
 }
 
-/// Denoises both halves and, upright and turned, all samples, `few` as `fewness` tells. Returns
-/// nothing without a denoiser, or where it fails, and then `failure` says why.
-std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves, float few,
-                                 std::string& failure) {
-    if (!denoiser) return std::nullopt;
-    // No samples have planned others up to 4 per pixel
-    const CountBy by = few >= 1 ? CountBy::samples : CountBy::halves;
-    const ColorPlanes all = mean_of(halves, by);
-    NoisyFeatures features;
-    // Noisy features are smoothed in about a third of the time as a draft, and the image errs 0.7 %
-    // more at 16 samples (docs/decisions/0085), but 2 % at 4, and 8 % behind a lens (0117)
-    features.draft = few == 0;
-    features.albedo = mean_of_features(halves, 0, by);
-    features.normal = mean_of_features(halves, 3, by);
-    try {
-        std::vector<ColorPlanes> images =
-            denoiser->denoise(features, {{.color = halves[0].color, .draft = true},
-                                         {.color = halves[1].color, .draft = true},
-                                         {.color = all},
-                                         {.color = all, .turned = true}});
-        Denoised clean{{std::move(images[0]), std::move(images[1])},
-                       std::move(images[2]),
-                       std::move(images[3])};
-        for (size_t k = 0; k < 3; ++k)
-            for (size_t i = 0; i < all[k].size(); ++i) {
-                const float upright = clean.whole[k][i], turned = clean.difference[k][i];
-                clean.whole[k][i] = 0.5f * (upright + turned);
-                clean.difference[k][i] = upright - turned;
-            }
-        return clean;
-    } catch (const Error& e) {
-        failure = e.what();
-        return std::nullopt;
-    }
+/// Keeps an image from being negative where the samples are not and, where they are, from being
+/// more negative than they.
+void keep_sign(const ColorPlanes& samples, ColorPlanes& color) {
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < color[k].size(); ++i)
+            color[k][i] = std::max(std::min(0.0f, samples[k][i]), color[k][i]);
+}
+
+void set_error(ErrorEstimate error, float dark_squared, HybridImage& image) {
+    image.relative_error = std::move(error.color);
+    image.variance = std::move(error.luminance);
+    const Plane bright = luminance(image.color);
+    for (size_t i = 0; i < bright.size(); ++i) image.variance[i] *= sqr(bright[i]) + dark_squared;
+}
+
+/// The image of DenoiserQuality::fast: the denoiser's, with the light that it lost, and nothing of
+/// our own candidates. `all`: the mean of the halves.
+HybridImage denoisers_image(const Halves& halves, const ColorPlanes& all, const Denoised& clean,
+                            float few, const HybridSettings& settings, float dark_squared) {
+    HybridImage image;
+    image.color = clean.whole;
+    keep_sign(all, image.color);
+    const ColorPlanes brightness = image.color;
+    LightReturn(halves, settings.noise, few).give_back(all, image.color);
+    const int w = all[0].width, h = all[0].height;
+    const Selection denoisers{clean.half, {Plane(w, h, 1)}};
+    set_error(estimate_error(halves, std::span(&clean.half, 1), denoisers, image.color, all,
+                             brightness, nullptr, settings.error_fast, dark_squared),
+              dark_squared, image);
+    const CandidateSettings& own = settings.candidates;
+    image.share.assign(1 + own.gaussians.size() + own.fits.size(), Plane(w, h));
+    image.share.push_back(denoisers.share[0]);
+    return image;
 }
 
 /// Multiplies the light of both halves.
@@ -181,12 +147,14 @@ void expose(Halves& halves, float factor) {
 HybridImage reconstruct_exposed(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                                 const HybridSettings& settings, float exposure) {
     // Denoise what the samples give
-    const ColorPlanes all = mean_of(halves);
+    const ColorPlanes all = mean_color(halves);
     const float dark_squared = kDarkSquared * sqr(exposure);
     HybridImage image;
     const float few = fewness(halves, settings.noise);
     const std::optional<Denoised> clean =
-        denoised(settings.denoiser, halves, few, image.denoiser_failure);
+        denoised(settings.denoiser, settings.quality, halves, few, image.denoiser_failure);
+    if (clean && settings.quality == DenoiserQuality::fast)
+        return denoisers_image(halves, all, *clean, few, settings, dark_squared);
     std::array<ColorPlanes, 2> samples, variance;  // the halves before anything is cut off
     if (clean)
         for (size_t k = 0; k < 2; ++k) {
@@ -231,21 +199,14 @@ HybridImage reconstruct_exposed(Halves halves, std::span<const covariance::Sym2<
         candidates.push_back(clean->half);
     }
 
-    // Keep the image from being negative where the samples are not and, where they are, from being
-    // more negative than they
-    for (size_t k = 0; k < 3; ++k)
-        for (size_t i = 0; i < all[k].size(); ++i)
-            image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
+    keep_sign(all, image.color);
     // Give light back, and estimate the error of what is delivered
     light_return.give_back(all, image.color);
-    ErrorEstimate error = estimate_error(
-        halves, candidates, s, image.color, all, guess, clean ? &clean->difference : nullptr,
-        clean ? settings.error_denoised : settings.error, dark_squared);
+    set_error(estimate_error(halves, candidates, s, image.color, all, guess,
+                             clean && clean->difference ? &*clean->difference : nullptr,
+                             clean ? settings.error_denoised : settings.error, dark_squared),
+              dark_squared, image);
     image.share = std::move(s.share);
-    image.relative_error = std::move(error.color);
-    image.variance = std::move(error.luminance);
-    const Plane bright = luminance(image.color);
-    for (size_t i = 0; i < bright.size(); ++i) image.variance[i] *= sqr(bright[i]) + dark_squared;
     return image;
 }
 
@@ -256,7 +217,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     for (HalfBuffer& half : halves) fill_holes(half);
     replace_empty_half(halves);
     // Bring dim images to where the constants are meant
-    const float exposure = display_exposure(luminance(mean_of(halves)));
+    const float exposure = display_exposure(luminance(mean_color(halves)));
     expose(halves, exposure);
     HybridImage image = reconstruct_exposed(std::move(halves), spectrum, settings, exposure);
     for (Plane& channel : image.color)

@@ -16,12 +16,14 @@ namespace covtrace {
 
 struct HybridSettings {
     CandidateSettings candidates;
-    ErrorFactors error, error_denoised = kDenoisedError;  ///< factors without and with a denoiser
+    /// Factors without a denoiser, and with one of either quality.
+    ErrorFactors error, error_denoised = kDenoisedError, error_fast = kFastDenoisedError;
     float sigma = 4;  ///< deviation of the neighbourhood that judges a first mixture, pixels
-    LikenessSettings likeness;           ///< likeness of the pixels that judge the final mixture
-    bool mix = true;                     ///< false: the best single candidate, for comparisons
+    LikenessSettings likeness;  ///< likeness of the pixels that judge the final mixture
+    bool mix = true;            ///< false: the best single candidate, for comparisons
     HalvesNoise noise = HalvesNoise::of_one_sequence;
     const Denoiser* denoiser = nullptr;  ///< the denoiser that gives one more candidate; null: none
+    DenoiserQuality quality = DenoiserQuality::high;
 };
 
 struct HybridImage {
@@ -38,8 +40,9 @@ struct HybridImage {
 
 /// Reconstructs the image. `halves` have the variances of their samples; `spectrum`: the predicted
 /// spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel; empty where
-/// there is no prediction, and then no candidate that needs one. The result depends on nothing else, and on no number of threads. With many samples it becomes the mean of
-/// the halves, wherever the candidates are off by more than the noise of the raw pixels.
+/// there is no prediction, and then no candidate that needs one. The result depends on nothing
+/// else, and on no number of threads. With many samples it becomes the mean of the halves, wherever
+/// the candidates are off by more than the noise of the raw pixels.
 HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                         const HybridSettings& settings = {});
 

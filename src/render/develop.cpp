@@ -62,7 +62,7 @@ Film whole_film(const RenderState& state) {
     return state.films.size() == 1 ? state.films[0] : merged(state.films);
 }
 
-Image develop(const RenderState& state, const Denoiser* denoiser) {
+Image develop(const RenderState& state, const Denoiser* denoiser, DenoiserQuality quality) {
     switch (state.method) {
         case Method::uniform:
             return completed(
@@ -75,18 +75,21 @@ Image develop(const RenderState& state, const Denoiser* denoiser) {
     const Prediction prediction = preintegrated(smoothed(state.covariance()));
     HybridSettings settings;
     settings.denoiser = denoiser;
+    settings.quality = quality;
     const HybridImage image = reconstruct(halves_of(state.films), prediction.spectrum, settings);
-    return develop(state, denoiser, {image, prediction});
+    return develop(state, denoiser, quality, {image, prediction});
 }
 
-Image develop(const RenderState& state, const Denoiser* denoiser,
+Image develop(const RenderState& state, const Denoiser* denoiser, DenoiserQuality quality,
               const Reconstructed& reconstructed) {
     Image image = mixed_image(state, state.covariance(), reconstructed);
     const std::string& failure = reconstructed.image.denoiser_failure;
-    if (!failure.empty())
+    if (!failure.empty()) {
         image.metadata["covtrace:denoiserFailure"] = failure;
-    else if (denoiser)
+    } else if (denoiser) {
         image.metadata["covtrace:denoiser"] = denoiser->name();
+        image.metadata["covtrace:denoiserQuality"] = std::string(name_of(quality));
+    }
     return completed(std::move(image), state);
 }
 

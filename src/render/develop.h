@@ -19,11 +19,12 @@ struct Reconstructed {
 };
 
 /// Makes the image with all layers of the method, also of an unfinished render, and the metadata
-/// that the state knows. `denoiser` is for `hybrid`, null for none; the metadata name it, or say
-/// why it failed.
-Image develop(const RenderState& state, const Denoiser* denoiser = nullptr);
+/// that the state knows. `denoiser` is for `hybrid`, null for none; the metadata name it with its
+/// quality, or say why it failed.
+Image develop(const RenderState& state, const Denoiser* denoiser = nullptr,
+              DenoiserQuality quality = DenoiserQuality::high);
 /// Makes the image of a `hybrid` render whose reconstruction is known already.
-Image develop(const RenderState& state, const Denoiser* denoiser,
+Image develop(const RenderState& state, const Denoiser* denoiser, DenoiserQuality quality,
               const Reconstructed& reconstructed);
 
 }  // namespace covtrace

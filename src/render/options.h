@@ -73,6 +73,9 @@ struct RenderOptions {
     /// Denoiser whose image is one more candidate, hybrid only; null: none. Has no influence on the
     /// samples but on when `error` and `seconds` end them.
     std::shared_ptr<const Denoiser> denoiser;
+    /// The part that the denoiser has in the image; none: high quality, or fast where `seconds`
+    /// leave too little for it.
+    std::optional<DenoiserQuality> denoiser_quality;
     Guides guides = Guides::automatic;  ///< what leads paths: for whoever builds the scene
     bool even_counts = false;           ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;        ///< uniform: keeps the light of emitters in view apart

@@ -23,12 +23,14 @@ inline constexpr auto kEnumNames<Preset> = enum_names<Preset>({{Preset::draft, "
 struct PresetValues {
     double spp = 0;                 ///< samples per pixel, where no budget is given
     std::optional<int> most_depth;  ///< limits the scene's depth; none: the scene's
-    bool denoises = true;           ///< whether a denoiser is looked for
+    // For `hybrid`, where they are not given; none: as without a preset.
+    std::optional<double> cov_spp;
+    std::optional<DenoiserQuality> denoiser_quality;
 };
 PresetValues values_of(Preset preset);
 
-/// Sets the samples and the scene's depth as the preset says, where options and overrides, which
-/// have been applied before, leave them open. The denoiser is its caller's to leave out.
+/// Sets options and the scene's depth as the preset says, where options and overrides, which have
+/// been applied before, leave them open.
 void apply(Preset preset, const SceneOverrides& overrides, SceneDescription& scene,
            RenderOptions& options);
 

@@ -100,8 +100,11 @@ void trace(RenderJob& job, const Rounds& rounds) {
         ranks->share_pixels(s);
         s.rejected = rejected + ranks->sum(s.rejected - rejected);
     }
+    const double gained = s.mean_count() - before;
+    // The first paths are analysed, too: they do not tell how long others take.
+    if (s.stage == Stage::pilot && gained > 0) s.seconds = s.seconds_spp = 0;
     s.seconds += job.monitor.elapsed() - start;
-    s.seconds_spp += s.mean_count() - before;
+    s.seconds_spp += gained;
 }
 
 /// Whether the first rounds did not come to their end, or a pixel has no sample.

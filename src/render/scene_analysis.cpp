@@ -7,9 +7,12 @@ SceneAnalysis::SceneAnalysis(RenderJob& job) : job_(job) {
         const PhaseTimer timer(job.monitor, job.seconds(Phase::spectra));
         spectra_.emplace(job.scene, job.options.texture_bandwidth);
     }
-    // The slack of latest_end() is for samples that an image needs.
-    const auto cancelled = [&job] {
-        return job.monitor.cancelled() || job.monitor.elapsed() >= job.tracing_end();
+    // The slack of latest_end() is for samples that an image needs. A film that is kept has no
+    // covariances of an analysis that time cut short: it could not go on to the same image as
+    // without an end.
+    const double end = job.keeping.keep ? kInfinity : job.tracing_end();
+    const auto cancelled = [&job, end] {
+        return job.monitor.cancelled() || job.monitor.elapsed() >= end;
     };
     if (asks_grid(job.options.occlusion)) {
         const PhaseTimer timer(job.monitor, job.seconds(Phase::grid));

@@ -55,7 +55,7 @@ class Choice(DenoiserTest):
             with self.subTest(choice=choice):
                 result, stats = self.hybrid(*choice, "--denoiser-library", fake("good"))
                 self.assertEqual(warnings_of(result), [])
-                self.assertEqual(stats["denoiser"], {"name": FAKE_NAME, "file": str(fake("good"))})
+                self.assertEqual(stats["denoiser"], {"name": FAKE_NAME, "file": str(fake("good")), "quality": "high"})
                 self.assertGreater(stats["seconds"]["denoise"], 0)
                 self.assertGreater(stats["seconds"]["reconstruction"], 0)
                 self.assertLessEqual(sum(stats["seconds"].values()), stats["seconds_total"])
@@ -126,6 +126,34 @@ class Choice(DenoiserTest):
             self.assertNotIn(str(FAKES).encode(), (self.folder / "out.exr").read_bytes())
             self.assertEqual(self.image().pixels["R"], plain.pixels["R"])
 
+    def test_fast_quality_is_the_denoisers_image(self):
+        """One of the samples that no other part of the reconstruction has seen, also when it is made of a film."""
+        result, stats = self.hybrid("--denoiser-library", fake("good"), "--denoiser-quality", "fast", "--film", "a.film",
+                                    "--layers", "all,share")
+        self.assertEqual(warnings_of(result), [])
+        self.assertIn("denoised fast", result.stderr)
+        self.assertEqual(stats["denoiser"]["quality"], "fast")
+        image = self.image()
+        self.assertEqual(image.value("covtrace:denoiserQuality"), "fast")
+        self.assertEqual(set(image.pixels["share.denoiser"]), {1})
+        self.assertEqual(set(image.pixels["share.raw"]), {0})
+        self.assertGreater(sum(image.pixels["error.Y"]), 0)
+        merged = self.run_program("merge", "a.film", "-o", "merged.exr", "--denoiser-library", fake("good"), "--denoiser-quality", "fast")
+        self.assertEqual(merged.code, DONE, merged)
+        self.assertEqual(self.image("merged.exr").pixels["R"], image.pixels["R"])
+        self.hybrid("--denoiser-library", fake("good"))
+        self.assertNotEqual(self.image().pixels["R"], image.pixels["R"])
+        self.assertEqual(self.image().pixels["raw.R"], image.pixels["raw.R"])
+
+    def test_quality_changes_nothing_without_hybrid(self):
+        result, _ = self.hybrid("--denoiser-quality", "fast", method="uniform")
+        self.assertIn("--denoiser-quality changes nothing", result.stderr)
+
+    def test_time_that_is_enough(self):
+        """Samples that end long before the time leave enough for high quality."""
+        _, stats = self.hybrid("--denoiser-library", fake("slow"), "--time", "60", spp="4")
+        self.assertEqual(stats["denoiser"]["quality"], "high")
+
     def test_too_little_time(self):
         """The time of a reconstruction with the denoiser is told by a part of the image."""
         result, stats = self.hybrid("--denoiser-library", fake("slow"), "--time", "1", spp="64")
@@ -136,6 +164,7 @@ class Choice(DenoiserTest):
 
     def test_wrong_values(self):
         self.assert_fails(self.run_program("render", "plain.pbrt", "--denoiser", "optix"), USAGE, "--denoiser", "auto|oidn|none")
+        self.assert_fails(self.run_program("render", "plain.pbrt", "--denoiser-quality", "low"), USAGE, "--denoiser-quality", "high|fast")
         self.assert_fails(self.run_program("render", "plain.pbrt", "--denoiser-library", ""), USAGE, "--denoiser-library")
 
     def test_threads_are_those_of_the_render(self):
@@ -174,7 +203,7 @@ class Places(DenoiserTest):
             with self.subTest(place=place):
                 (self.tree / place).mkdir(parents=True)
                 shutil.copy2(fake("good"), self.tree / place)
-                self.assertEqual(self.found(), {"name": FAKE_NAME, "file": str(self.tree / place / NAME)})
+                self.assertEqual(self.found(), {"name": FAKE_NAME, "file": str(self.tree / place / NAME), "quality": "high"})
 
     def test_none_there(self):
         found = self.found()

@@ -48,9 +48,20 @@ class Presets(CliTest):
         # A library that is none is told of, unless no denoiser is looked for.
         self.write("no.so", "no library")
         arguments = ["--denoiser-library", "no.so", "--spp", "2"]
-        self.assertIn("no denoiser", self.render(TINY, *arguments, "--preset", "preview").stderr)
-        self.assertNotIn("no denoiser", self.render(TINY, *arguments, "--preset", "draft").stderr)
-        self.assertIn("no denoiser", self.render(TINY, *arguments, "--preset", "draft", "--denoiser", "auto").stderr)
+        for preset in ("draft", "preview"):
+            self.assertIn("no denoiser", self.render(TINY, *arguments, "--preset", preset).stderr)
+            self.assertNotIn("no denoiser", self.render(TINY, *arguments, "--preset", preset, "--denoiser", "none").stderr)
+
+    def test_drafts_are_analysed_less_and_denoised_fast(self):
+        bundle = ["--spp", "4", "--max-depth", "4", "--cov-spp", "0.25", "--denoiser-quality", "fast"]
+        for other in ([], ["--denoiser-quality", "high"], ["--cov-spp", "1"]):
+            with self.subTest(other=other):
+                images = [self.rendered(*arguments, *other, output=f"{i}.exr", scene=DEEP)
+                          for i, arguments in enumerate((["--preset", "draft"], bundle))]
+                self.assertTrue(json.loads(self.run_program("compare", *images, "--json").stdout)["identical"])
+        # Options of hybrid alone are no options of others
+        for method in ("uniform", "covariance"):
+            self.assertNotIn("changes nothing", self.render(TINY, "--method", method, "--preset", "draft").stderr)
 
     def test_help_and_errors(self):
         self.assert_fails(self.render(TINY, "--preset", "best"), USAGE, "--preset", "draft|preview|final")

@@ -143,6 +143,21 @@ class MoreSamples(FilmTest):
                 self.run_render("sky", "hybrid", "--spp", spp, output="whole.exr")
                 self.assert_identical("whole.exr", "out.exr")
 
+    def test_a_pilot_that_time_cut_short_is_the_beginning_of_one_call(self):
+        cut = 0
+        for seconds in ("0.2", "0.6", "1.5"):
+            with self.subTest(seconds=seconds):
+                film = f"{seconds}.film"
+                large = ["--resolution", "500x400", "--denoiser", "none"]
+                self.run_render("sky", "hybrid", *large, "--time", seconds, "--film", film)
+                if exr.read(self.folder / "out.exr").value("spp") > 4:
+                    continue  # beyond the pilot the plan knows of the samples so far
+                self.run_render("sky", "hybrid", *large, "--spp", "8", "--checkpoint", film, "--resume")
+                self.run_render("sky", "hybrid", *large, "--spp", "8", output="whole.exr")
+                self.assert_identical("whole.exr", "out.exr")
+                cut += 1
+        self.assertGreater(cut, 0)
+
     def test_any_other_count_is_reached_too(self):
         for method in METHODS:
             with self.subTest(method=method):

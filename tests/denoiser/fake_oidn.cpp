@@ -1,7 +1,8 @@
 // The part of Open Image Denoise's interface that covtrace uses, around a box of 3 x 3 pixels. One
 // of the definitions FAKE_… says what is wrong with it. Where the environment has
 // FAKE_OIDN_THREADS, no other number of threads is accepted; where it has FAKE_OIDN_IMAGES, "color
-// albedo", no others for light; where it has FAKE_OIDN_QUALITY, no other quality for light.
+// albedo", no others for light; where it has FAKE_OIDN_QUALITY, no other quality for light; where
+// it has FAKE_OIDN_FEATURES, "clean" or "noisy", no others beside light.
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -33,6 +34,7 @@ struct Filter {
     size_t width = 0, height = 0;
     std::string images;  // the names of its inputs, in order
     int quality = 0;
+    bool has_clean_features = false;
 };
 
 #ifdef FAKE_NO_DEVICE
@@ -121,7 +123,9 @@ void oidnSetSharedFilterImage(Filter* filter, const char* name, void* data, int,
     filter->height = height;
 }
 
-void oidnSetFilterBool(Filter*, const char*, bool) {}
+void oidnSetFilterBool(Filter* filter, const char* name, bool value) {
+    if (std::strcmp(name, "cleanAux") == 0) filter->has_clean_features = value;
+}
 void oidnSetFilterInt(Filter* filter, const char* name, int value) {
     if (std::strcmp(name, "quality") == 0) filter->quality = value;
 }
@@ -137,6 +141,12 @@ void oidnExecuteFilter(Filter* filter) {
     const char* quality = std::getenv("FAKE_OIDN_QUALITY");
     if (quality && filter->images.starts_with("color") && filter->quality != std::atoi(quality))
         filter->device->error = "the filter gets another quality";
+    // Features are cleaned by filters of their own
+    const char* features = std::getenv("FAKE_OIDN_FEATURES");
+    const bool wants_clean = features && std::strcmp(features, "clean") == 0;
+    const bool is_of_light = filter->images.starts_with("color");
+    if (features && (is_of_light ? filter->has_clean_features != wants_clean : !wants_clean))
+        filter->device->error = "the filter gets other features";
 #ifdef FAKE_EXECUTE_FAILS
     filter->device->error = "the filter is out of order";
 #else

@@ -79,7 +79,12 @@ class Rendering(unittest.TestCase):
         self.assertEqual(plain.statistics["denoiser"], {"why_none": "not asked for"})
         image = covtrace.render(scene, spp=4, denoiser="oidn", denoiser_library=fake("good"))
         self.assertEqual(image.statistics["denoiser"],
-                         {"name": "Open Image Denoise 2.3.99", "file": str(fake("good"))})
+                         {"name": "Open Image Denoise 2.3.99", "file": str(fake("good")), "quality": "high"})
+        fast = covtrace.render(scene, spp=4, denoiser_library=fake("good"), denoiser_quality="fast")
+        self.assertEqual(fast.statistics["denoiser"]["quality"], "fast")
+        self.assertFalse(numpy.array_equal(fast.rgb, image.rgb))
+        with self.assertRaisesRegex(covtrace.UsageError, "denoiser_quality"):
+            covtrace.render(scene, spp=4, denoiser_quality="low")
         self.assertEqual(image.metadata["covtrace:denoiser"], "Open Image Denoise 2.3.99")
         self.assertGreater(image.statistics["seconds"]["denoise"], 0)
         self.assertFalse(numpy.array_equal(image.rgb, plain.rgb))

@@ -51,6 +51,25 @@ TEST(OidnDenoiser, FeaturesThatAreNotKnownAreLeftOut) {
     images_are("color", false, true);  // the library takes no normals without an albedo
 }
 
+TEST(OidnDenoiser, FeaturesAreCleanedUnlessTheyAreToBeTakenAsTheyAre) {
+    const OidnDenoiser denoiser = fake("good");
+    NoisyView view = noisy_view(9, 7);
+    const auto features_are = [&](FeatureCleaning cleaning, const char* features) {
+        view.features.cleaning = cleaning;
+        for (const char* other : {"clean", "noisy"}) {
+            ::setenv("FAKE_OIDN_FEATURES", other, 1);
+            if (std::string(other) == features)
+                EXPECT_NO_THROW(denoised(denoiser, view));
+            else
+                EXPECT_THROW(denoised(denoiser, view), Error);
+            ::unsetenv("FAKE_OIDN_FEATURES");
+        }
+    };
+    features_are(FeatureCleaning::thorough, "clean");
+    features_are(FeatureCleaning::draft, "clean");
+    features_are(FeatureCleaning::none, "noisy");
+}
+
 TEST(OidnDenoiser, DraftsTakeTheLeastQualityThatTheVersionHas) {
     constexpr const char *kFast = "4", *kBalanced = "5", *kHigh = "6";
     const auto quality_is = [](const char* library, bool draft, const char* quality) {

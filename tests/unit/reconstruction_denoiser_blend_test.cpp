@@ -41,9 +41,11 @@ class AskedDenoiser : public FixedDenoiser {
     std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
                                      std::vector<NoisyImage> images) const override {
         seen = features;
+        images_seen = images.size();
         return FixedDenoiser::denoise(features, std::move(images));
     }
     mutable NoisyFeatures seen;
+    mutable size_t images_seen = 0;
 };
 
 ColorPlanes grey(const auto& truth) {
@@ -54,9 +56,11 @@ ColorPlanes grey(const auto& truth) {
     return color;
 }
 
-HybridImage with(const Denoiser& denoiser, const Halves& halves) {
+HybridImage with(const Denoiser& denoiser, const Halves& halves,
+                 DenoiserQuality quality = DenoiserQuality::high) {
     HybridSettings settings;
     settings.denoiser = &denoiser;
+    settings.quality = quality;
     return reconstruct(halves, kSpectrum, settings);
 }
 
@@ -154,16 +158,16 @@ TEST(DenoiserBlend, FeaturesOfFewSamplesAreNoDraft) {
     const AskedDenoiser denoiser;
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 36);  // 8 samples in each half
     with(denoiser, halves);
-    EXPECT_TRUE(denoiser.seen.draft);
+    EXPECT_EQ(denoiser.seen.cleaning, FeatureCleaning::draft);
     halves[0].count = Plane(kSize, kSize, 7);
     with(denoiser, halves);
-    EXPECT_FALSE(denoiser.seen.draft);
+    EXPECT_EQ(denoiser.seen.cleaning, FeatureCleaning::thorough);
     // The samples of other renderers are not counted
     HybridSettings settings;
     settings.denoiser = &denoiser;
     settings.noise = HalvesNoise::independent;
     reconstruct(halves, kSpectrum, settings);
-    EXPECT_TRUE(denoiser.seen.draft);
+    EXPECT_EQ(denoiser.seen.cleaning, FeatureCleaning::draft);
 }
 
 TEST(DenoiserBlend, BelowThePilotItIsToldOfSamplesByTheirNumber) {
@@ -204,6 +208,57 @@ TEST(DenoiserBlend, FewSamplesKeepLessOfRareLight) {
     EXPECT_GT(light_of(8), 0.9 * kAll);
     EXPECT_LT(light_of(2), 0.5 * kAll);
     EXPECT_LT(light_of(1), 0.05 * kAll);
+}
+
+TEST(DenoiserBlend, FastQualityIsTheDenoisersAlone) {
+    // Even one that is wrong: nothing of our own is there to tell.
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.02f, 42);
+    const AskedDenoiser denoiser;
+    const HybridImage image = with(denoiser, halves, DenoiserQuality::fast);
+    EXPECT_EQ(denoiser.images_seen, 2u);
+    EXPECT_EQ(denoiser.seen.cleaning, FeatureCleaning::none);
+    ASSERT_EQ(image.share.size(), reconstruct(halves, kSpectrum).share.size() + 1);
+    EXPECT_EQ(mean_share(image), 1);
+    for (size_t c = 0; c + 1 < image.share.size(); ++c)
+        for (const float share : image.share[c].values) ASSERT_EQ(share, 0);
+    const Plane& color = image.color[0];
+    const float scale = color(5, 5);
+    for (const float v : color.values) EXPECT_NEAR(v, scale, 0.5f * scale);
+}
+
+TEST(DenoiserBlend, FastQualityKeepsTheLightOfTheSamples) {
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = noisy_halves(kSize, kSize, one, 0.1f, 43);
+    const HybridImage image = with(FixedDenoiser(constant(0.8f)), halves, DenoiserQuality::fast);
+    EXPECT_NEAR(mean_of(image.color), 1, 0.01);
+}
+
+TEST(DenoiserBlend, FastQualityTellsItsErrorByOneHalf) {
+    // Half A alone is off by 0.3 from all samples; so is B, the other way, and their mean by less.
+    class HalvesDiffer : public FixedDenoiser {
+      public:
+        HalvesDiffer() : FixedDenoiser(constant(1)) {}
+        std::vector<ColorPlanes> denoise(const NoisyFeatures&,
+                                         std::vector<NoisyImage> images) const override {
+            std::vector<ColorPlanes> results;
+            for (const NoisyImage& image : images)
+                results.push_back(constant(image.draft ? 1.3f : 1));
+            return results;
+        }
+    };
+    const auto one = [](int, int) { return 1.0f; };
+    Halves halves = noisy_halves(kSize, kSize, one, 0, 44);
+    for (HalfBuffer& half : halves) half.count = Plane(kSize, kSize, 1e6f);
+    const HybridImage image = with(HalvesDiffer(), halves, DenoiserQuality::fast);
+    const double noise = double(kFastDenoisedError.noise) * 0.3 * 0.3;
+    EXPECT_NEAR(image.variance(20, 20), noise, 0.02 * noise);
+}
+
+TEST(DenoiserBlend, OneThatFailsIsLeftOutOfFastQuality) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 35);
+    const HybridImage image = with(FailingDenoiser(), halves, DenoiserQuality::fast);
+    EXPECT_EQ(image.denoiser_failure, "out of order");
+    EXPECT_EQ(image.color[1].values, reconstruct(halves, kSpectrum).color[1].values);
 }
 
 TEST(DenoiserBlend, OneThatFailsIsLeftOut) {

@@ -11,6 +11,7 @@
 #include "reconstruction/hybrid.h"
 #include "reconstruction/luminance.h"
 #include "render/develop.h"
+#include "render/methods/reconstruction_times.h"
 #include "render/rounds.h"
 #include "render/sample_knowledge.h"
 #include "render/scene_analysis.h"
@@ -29,7 +30,10 @@ constexpr double kLeastForError = 16;
 
 class HybridRender {
   public:
-    explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
+    explicit HybridRender(RenderJob& job)
+        : job_(job),
+          s_(job.state),
+          quality_(job.options.denoiser_quality.value_or(DenoiserQuality::high)) {
         for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
         if (job.options.denoiser)
             denoiser_.emplace(*job.options.denoiser, job.monitor, job.seconds(Phase::denoise),
@@ -50,7 +54,7 @@ class HybridRender {
             image_->denoiser_failure = "it takes longer than the time that was left";
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         const Reconstructed known{*image_, *prediction_};
-        job_.result.image = develop(s_, denoiser(), known);
+        job_.result.image = develop(s_, denoiser(), quality_, known);
     }
 
     HybridSamples samples() && {
@@ -60,10 +64,14 @@ class HybridRender {
 
   private:
     size_t size() const { return s_.pixels(); }
-    const Denoiser* denoiser() const { return denoiser_ ? &*denoiser_ : nullptr; }
+    /// The denoiser that is used.
+    const Denoiser* denoiser() const {
+        return denoiser_ && !is_denoiser_too_slow_ ? &*denoiser_ : nullptr;
+    }
     HybridSettings settings() const {
         HybridSettings settings;
         settings.denoiser = denoiser();
+        settings.quality = quality_;
         return settings;
     }
     double pilot() const {
@@ -97,8 +105,20 @@ class HybridRender {
         return counts;
     }
 
-    std::vector<std::vector<uint32_t>> pilot_counts() const {
-        return {share_between_halves(0, pilot()), share_between_halves(1, pilot())};
+    std::vector<std::vector<uint32_t>> pilot_counts(double spp) const {
+        return {share_between_halves(0, spp), share_between_halves(1, spp)};
+    }
+
+    /// Samples per pixel that a budget of time allows in the first round of the pilot; it goes on
+    /// with the rest where that was less than time allows. Shards have their clocks apart, and the
+    /// whole pilot each.
+    double first_of_pilot() {
+        const bool is_predictable = s_.covariance_spp <= 1;  // all covariances are there
+        if (!job_.options.seconds || !job_.keeping.shard.is_all() || !is_predictable)
+            return pilot();
+        predict();
+        reserve_time();
+        return std::max(std::min(1.0, pilot()), job_.plan_round(pilot()));
     }
 
     /// Covariance paths of half k. They are samples, too.
@@ -116,17 +136,19 @@ class HybridRender {
                 return true;
             }
             case Stage::pilot:
-                s_.plan = pilot_counts();
-                s_.target = pilot();
+                s_.target = first_of_pilot();
+                s_.plan = pilot_counts(s_.target);
                 return true;
             case Stage::rounds:
                 break;
         }
-        // Go on with the pilot where a budget ended within it
-        if (s_.taken < pilot() && job_.begin_round(pilot(), pilot_counts())) return true;
-        const bool first_here = !prediction_;
         predict();
-        if (first_here && job_.options.seconds) reserve_time();
+        reserve_time();
+        // Go on with the pilot where a budget ended within it
+        if (s_.taken < pilot()) {
+            const double rest = job_.plan_round(pilot());
+            return rest > s_.taken && job_.begin_round(rest, pilot_counts(rest));
+        }
         const double target = job_.plan_round(std::min(round_end(s_.taken), enough_samples()));
         // The pilot may have given every pixel all that it is to have
         const bool is_full = job_.options.max_spp && pilot() >= double(*job_.options.max_spp);
@@ -266,82 +288,31 @@ class HybridRender {
         return *job_.enough;
     }
 
-    /// Keeps time for the reconstruction and for writing the image. The denoiser is given up where
-    /// there is too little time for a reconstruction with it.
+    /// Keeps time for the reconstruction, which is timed once, and for writing the image.
     void reserve_time() {
-        if (!job_.delivers()) return;
-        // Seconds of writing over those of the reconstruction beside the denoiser: 0.28 to 0.36 at
-        // 400x300, 960x540 and 1920x1080
-        constexpr double kWriting = 0.35;
-        const PartTime part = least_part_time();
-        const double parts = double(size()) / part.pixels,
-                     rest = (1 + kWriting) * part.rest * parts,
-                     with_denoiser = rest + part.denoiser * parts;
-        is_denoiser_too_slow_ =
-            denoiser_ && with_denoiser > job_.tracing_end() - job_.monitor.elapsed();
-        if (is_denoiser_too_slow_) denoiser_.reset();
-        job_.reserve(is_denoiser_too_slow_ ? rest : with_denoiser);
-    }
-
-    struct PartTime {
-        double pixels = 0;
-        double denoiser = 0, rest = 0;  ///< seconds
-    };
-
-    /// Times the reconstruction of a part of the image, and of a large image the least of three
-    /// times, as other work of the machine makes one in a few much longer. The times decide when to
-    /// stop and nothing else.
-    PartTime least_part_time() {
-        constexpr int kTinySide = 16, kSide = 96;
-        constexpr size_t kLarge = 10 * kSide * kSide;  // pixels
-        if (denoiser_) time_part(kTinySide);  // to start the denoiser takes as long as a part
-        PartTime least = time_part(kSide);
-        for (int i = 0; i < 2 && size() >= kLarge; ++i) {
-            const PartTime again = time_part(kSide);
-            least.denoiser = std::min(least.denoiser, again.denoiser);
-            least.rest = std::min(least.rest, again.rest);
-        }
-        return least;
-    }
-
-    /// Times the reconstruction of the middle of the image, at most `side` pixels wide and high.
-    PartTime time_part(int side) {
-        const PixelBounds all = job_.region;
-        const int w = std::min(side, all.width()), h = std::min(side, all.height());
-        const PixelBounds part{all.x0 + (all.width() - w) / 2, all.y0 + (all.height() - h) / 2,
-                               all.x0 + (all.width() + w) / 2, all.y0 + (all.height() + h) / 2};
-        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
-        std::vector<Film> films(2, Film(part, film_parts(Method::hybrid)));
-        std::vector<Covariance2> spectrum;
-        for (int y = part.y0; y < part.y1; ++y)
-            for (int x = part.x0; x < part.x1; ++x) {
-                const size_t to = size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0);
-                const size_t from = size_t(y - all.y0) * size_t(all.width()) + size_t(x - all.x0);
-                for (size_t k = 0; k < 2; ++k) {
-                    films[k].pixels[to] = s_.films[k].pixels[from];
-                    films[k].features[to] = s_.films[k].features[from];
-                    films[k].feature_squares[to] = s_.films[k].feature_squares[from];
-                }
-                spectrum.push_back(prediction_->spectrum[from]);
-            }
-        Halves halves = halves_of(films);
-        // Planes of zeros take the denoiser no time
-        for (HalfBuffer& half : halves)
-            for (float* v : {&half.color[0][0], &half.feature[0][0], &half.feature[3][0]})
-                *v = std::max(*v, 1.0f);
-        const auto denoising = [this] { return denoiser_ ? job_.seconds(Phase::denoise) : 0.0; };
-        const double start = job_.monitor.elapsed(), before = denoising();
-        reconstruct(std::move(halves), spectrum, settings());
-        const double denoiser = denoising() - before;
-        return {double(spectrum.size()), denoiser, job_.monitor.elapsed() - start - denoiser};
+        if (!job_.options.seconds || !job_.delivers()) return;
+        if (!times_)
+            times_ = reconstruction_times(job_, *prediction_, denoiser_ ? &*denoiser_ : nullptr);
+        job_.reserve(0);
+        const double sampling = job_.target_spp && s_.seconds_spp > 0
+                                    ? (*job_.target_spp - s_.taken) * s_.seconds / s_.seconds_spp
+                                    : kInfinity;
+        const auto quality =
+            affordable_quality(*times_, job_.options.denoiser_quality,
+                               job_.tracing_end() - job_.monitor.elapsed(), sampling);
+        is_denoiser_too_slow_ = denoiser_ && !quality;
+        quality_ = quality.value_or(quality_);
+        job_.reserve(quality ? times_->denoised.at(*quality) : times_->without_denoiser);
     }
 
     RenderJob& job_;
     RenderState& s_;
     std::vector<PassContext> contexts_;
     std::optional<TimedDenoiser> denoiser_;
+    DenoiserQuality quality_;
     bool is_denoiser_too_slow_ = false;
-    std::optional<SceneAnalysis> analysis_;  // there while covariance paths are traced
+    std::optional<ReconstructionTimes> times_;  ///< there once time was to be kept
+    std::optional<SceneAnalysis> analysis_;     // there while covariance paths are traced
     // Smoothed; there from the end of the covariance paths on.
     std::optional<Prediction> prediction_;
     std::optional<HybridImage> image_;  // image of the film as it is

@@ -18,6 +18,7 @@ std::vector<std::string> idle_options(const RenderOptions& o, bool insists_on_de
     const bool is_hybrid = o.method == Method::hybrid;
     require(o.even_counts, "--even-counts", is_hybrid, "hybrid");
     require(insists_on_denoiser, "--denoiser", is_hybrid, "hybrid");
+    require(o.denoiser_quality.has_value(), "--denoiser-quality", is_hybrid, "hybrid");
     const bool predicts = o.method != Method::uniform;
     const std::string both = "covariance or hybrid";
     require(o.cov_spp.has_value(), "--cov-spp", predicts, both);
