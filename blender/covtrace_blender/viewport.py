@@ -76,6 +76,9 @@ class Viewport:
         options = ["--method", chosen.method, "--spp", repr(chosen.viewport_samples), "--seed", str(chosen.seed)]
         if not chosen.denoise:
             options += ["--denoiser", "none"]
+        elif chosen.method == "hybrid":
+            # A view has often changed before high quality, which takes several times as long, is there
+            options += ["--denoiser-quality", "fast"]
         if chosen.threads > 0:
             options += ["--threads", str(chosen.threads)]
         text = viewport_text(scene, size, seen.view_matrix, seen.window_matrix)
