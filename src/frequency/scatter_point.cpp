@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "shading/normal_map.h"
+#include "shading/reflecting_normal.h"
 
 namespace covtrace {
 
@@ -20,10 +21,28 @@ cov::Sym2<double> texture_spectrum(const LitScene& scene, const TextureSpectra& 
 }
 
 DifferentialGeometry geometry_at(const LitScene& scene, const PathVertex& vertex) {
-    // Without a normal map the tangents are already those of the BSDF's frame.
-    return scene.materials.turns_frame(vertex.material)
+    // Where nothing turns the normal, the tangents are already those of the BSDF's frame.
+    return vertex.is_turned || scene.materials.turns_frame(vertex.material)
                ? scene.geometry.differential(vertex.hit)
                : scene.geometry.differential(vertex.hit, vertex.shading);
+}
+
+/// The normals as they are turned to let light mirrored towards vertex.wo leave the surface.
+cov::NormalField<double> reflecting_normals(const cov::NormalField<double>& unturned,
+                                            const PathVertex& vertex) {
+    // Normals turn by this angle, radians, for the differences: a thousand roundings of theirs
+    constexpr double kTurn = 1e-3;
+    const cov::Vec3<double> here{vertex.shading.z};
+    const auto change = [&](const cov::Vec3<double>& d) -> cov::Vec3<double> {
+        const double size = std::sqrt(cov::dot(d, d));
+        if (!(size > 0)) return {};
+        const cov::Vec3<float> beside{unturned.n + (kTurn / size) * d};
+        const cov::Vec3<double> there{reflecting_normal(
+            normalize(Vec3{beside.x, beside.y, beside.z}), vertex.hit.ng, vertex.wo)};
+        const cov::Vec3<double> turned = (size / kTurn) * (there - here);
+        return turned - cov::dot(turned, here) * here;
+    };
+    return {here, change(unturned.d1), change(unturned.d2)};
 }
 
 constexpr unsigned bit(LobeKind kind) {
@@ -53,18 +72,22 @@ ScatterPoint::ScatterPoint(const LitScene& scene, const TextureSpectra& spectra,
     : surface{d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
       shading(vertex.shading),
       leaving(cov::frame_along<double>(vertex.wo)) {
-    if (scene.materials.turns_frame(vertex.material)) {
+    const bool is_mapped = scene.materials.turns_frame(vertex.material);
+    if (is_mapped) {
         const NormalMap map(scene.materials.description(vertex.material), scene.textures,
                             scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
         // Positions stay on the geometry; the normal turns by both shape operators.
-        const Frame axes = Frame::from_z_x(vertex.shading.z, d.tangent.x);
+        const Frame axes = Frame::from_z_x(
+            vertex.is_turned ? map.frame().z : vertex.shading.z, d.tangent.x);
         const auto [k11, k12, k22] = map.curvature();
         normals = {axes.z, axes.x * (d.k11 + k11) + axes.y * (d.k12 + k12),
                    axes.x * (d.k12 + k12) + axes.y * (d.k22 + k22)};
-        turned = cov::shading_surface(surface, *normals);
     } else if (d.k11 != 0 || d.k12 != 0 || d.k22 != 0) {
         normals = cov::normal_field(surface);
     }
+    if (vertex.is_turned)
+        normals = reflecting_normals(normals.value_or(cov::normal_field(surface)), vertex);
+    if (is_mapped || vertex.is_turned) turned = cov::shading_surface(surface, *normals);
     if (d.velocity != Vec3{} || d.angular_velocity != Vec3{})
         motion = {d.velocity, d.angular_velocity};
     const unsigned kinds = kinds_of_lobes(vertex);

@@ -14,9 +14,10 @@ namespace covtrace {
 struct ScatterPoint {
     covariance::Surface<double> surface;  ///< the geometry, on which positions are measured
     /// Field of the normals that the BSDF faces, of the geometry or of a bump or normal map over
-    /// it; empty on flat geometry without such a map.
+    /// it, turned where the vertex' frame is; empty on flat geometry without such a map.
     std::optional<covariance::NormalField<double>> normals;
-    /// The surface with its tangents turned along by a bump or normal map; empty without one.
+    /// The surface with its tangents turned along with the normal, by a bump or normal map or for
+    /// mirrored light; empty where nothing turns it.
     std::optional<covariance::Surface<double>> turned;
     std::optional<covariance::Motion<double>> motion;  ///< empty where nothing moves
     /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene

@@ -5,6 +5,7 @@
 #include "bsdf/models.h"
 #include "integrator/path_tracer.h"
 #include "shading/normal_map.h"
+#include "shading/reflecting_normal.h"
 #include "shading/strand.h"
 
 namespace covtrace {
@@ -17,6 +18,11 @@ bool transmits(const Bsdf& bsdf) {
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf) ||
            std::holds_alternative<HairBsdf>(bsdf) ||
            std::holds_alternative<ThinDielectricBsdf>(bsdf);
+}
+
+/// Whether the model loses light that it mirrors to below the surface.
+bool loses_mirrored_light(const Bsdf& bsdf) {
+    return has_sharp_lobe(bsdf) && !transmits(bsdf);
 }
 
 }  // namespace
@@ -137,15 +143,19 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape,
     weigh(placed.weight);
     if (auto* glass = std::get_if<DielectricBsdf>(&bsdf); glass && glass->dispersion)
         disperse(*glass);
-    const Frame frame = frame_at(hit, shape, material);
+    const Frame unturned = frame_at(hit, shape, material);
+    const Frame frame = reflecting_frame(unturned, hit, bsdf, wo);
     if (scene_.materials.turns_clearcoat(material))
-        turn_clearcoat(bsdf, hit, shape, material, frame);
+        turn_clearcoat(bsdf, hit, shape, material, frame, wo);
     const Surface surface{hit, shape, bsdf, frame, frame.to_local(wo)};
-    // Describe the surface to filters and denoisers
+    // Describe the surface to filters and denoisers, by its smooth normal
     if (seen_clearly_)
-        describe_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(frame.z, wo));
+        describe_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(unturned.z, wo));
     if (depth_ == 0) describe_first(hit, wo);
-    if (vertex) vertex->shading = frame;
+    if (vertex) {
+        vertex->shading = frame;
+        vertex->is_turned = frame.z != unturned.z;
+    }
     if (depth_++ == max_depth_) return false;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
     const auto [u_choice, u_light, u_scatter, u_roulette] = sampler_.next_four_2d();
@@ -182,14 +192,22 @@ Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,
     return mapped_frame(hit, shape, scene_.materials.description(material), MappedLayer::surface);
 }
 
+Frame PathTracer::reflecting_frame(const Frame& unturned, const SurfaceHit& hit, const Bsdf& bsdf,
+                                   Vec3 wo) {
+    const Vec3 normal = reflecting_normal(unturned.z, hit.ng, wo);
+    const bool stays = normal == unturned.z || !loses_mirrored_light(bsdf);
+    return stays ? unturned : Frame::from_z_x(normal, unturned.x);
+}
+
 void PathTracer::turn_clearcoat(Bsdf& bsdf, const SurfaceHit& hit, const PlacedShape& shape,
-                                MaterialId material, const Frame& frame) const {
+                                MaterialId material, const Frame& frame, Vec3 wo) const {
     auto* layered = std::get_if<LayeredBsdf>(&bsdf);
     if (!layered) return;
     const MaterialDescription& description = scene_.materials.description(material);
-    const Vec3 normal = description.clearcoat->normal_map >= 0
-                            ? mapped_frame(hit, shape, description, MappedLayer::clearcoat).z
-                            : hit.ns;
+    Vec3 normal = description.clearcoat->normal_map >= 0
+                      ? mapped_frame(hit, shape, description, MappedLayer::clearcoat).z
+                      : hit.ns;
+    if (loses_mirrored_light(bsdf)) normal = reflecting_normal(normal, hit.ng, wo);
     layered->coat.normal = frame.to_local(normal);
 }
 
@@ -211,7 +229,7 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
     v->wo = wo;
     v->material = -1;
     v->emitted = v->direct = v->mirrored = 0;
-    v->scatters = false;
+    v->scatters = v->is_turned = false;
     v->seen_sharply = sharp_so_far_;
     v->glow = glow_;
     glow_ = 0;

@@ -90,8 +90,9 @@ void PathTracer::add_mirrored_light(const Surface& surface, PathVertex* vertex) 
     if (!found) return;
     const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
     const MaterialId material = shape.description.material;
-    const Frame frame = frame_at(hit, shape, material);
-    const auto reflected = sample(bsdf_at(hit, material), frame.to_local(-wi), 0, {});
+    const Bsdf bsdf = bsdf_at(hit, material);
+    const Frame frame = reflecting_frame(frame_at(hit, shape, material), hit, bsdf, -wi);
+    const auto reflected = sample(bsdf, frame.to_local(-wi), 0, {});
     if (!reflected || !is_specular(reflected->lobe) || is_transmission(reflected->lobe)) return;
     carried *= reflected->weight * reflected->pdf;
     // Look at the light from there

@@ -24,6 +24,8 @@ struct PathVertex {
     MediumId medium = -1;  ///< medium that scatters; -1: on a surface
     Vec3 wo;               ///< unit, world, towards the previous vertex or the camera
     Frame shading;         ///< frame of the BSDF: anisotropic roughness is along its x and y
+    /// Whether the frame is turned to let mirrored light leave the surface: reflecting_normal.h.
+    bool is_turned = false;
     MaterialId material = -1;
 
     /// Luminance that reaches the sensor from this vertex' own emission, after multiple importance

@@ -133,11 +133,15 @@ class PathTracer {
     bool is_seen(const UnlitBsdf& unlit) const;
     /// Adds the colour of an unlit surface, where the path ends; returns false.
     bool see_unlit(const UnlitBsdf& unlit, MaterialId material);
-    /// The frame of the BSDF, with the material's bump or normal map.
+    /// The frame of the surface, with the material's bump or normal map.
     Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const;
-    /// Gives the clear coat its own normal, in the frame of the BSDF.
+    /// The frame of the BSDF as it is seen along `wo`, world: turned where lobes about the mirrored
+    /// direction would lose their light; see reflecting_normal.h.
+    static Frame reflecting_frame(const Frame& unturned, const SurfaceHit& hit, const Bsdf& bsdf,
+                                  Vec3 wo);
+    /// Gives the clear coat its own normal, turned likewise, in the frame of the BSDF.
     void turn_clearcoat(Bsdf& bsdf, const SurfaceHit& hit, const PlacedShape& shape,
-                        MaterialId material, const Frame& frame) const;
+                        MaterialId material, const Frame& frame, Vec3 wo) const;
     Frame mapped_frame(const SurfaceHit& hit, const PlacedShape& shape,
                        const MaterialDescription& material, MappedLayer layer) const;
     PathVertex* begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo);
