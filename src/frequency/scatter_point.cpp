@@ -77,8 +77,8 @@ ScatterPoint::ScatterPoint(const LitScene& scene, const TextureSpectra& spectra,
         const NormalMap map(scene.materials.description(vertex.material), scene.textures,
                             scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
         // Positions stay on the geometry; the normal turns by both shape operators.
-        const Frame axes = Frame::from_z_x(
-            vertex.is_turned ? map.frame().z : vertex.shading.z, d.tangent.x);
+        const Frame axes =
+            Frame::from_z_x(vertex.is_turned ? map.frame().z : vertex.shading.z, d.tangent.x);
         const auto [k11, k12, k22] = map.curvature();
         normals = {axes.z, axes.x * (d.k11 + k11) + axes.y * (d.k12 + k12),
                    axes.x * (d.k12 + k12) + axes.y * (d.k22 + k22)};

@@ -36,9 +36,8 @@ TEST(ScatterPoint, NormalsTurnAlongTheSurfaceAsTheFramesOfPathsDo) {
                                  vertex_at(scene, place - step, angle).shading.z) /
                                 (2 * kStep);
             const cov::Vec3<double> d{step / kStep};
-            const cov::Vec3<double> predicted =
-                cov::dot(d, point.surface.t1) * point.normals->d1 +
-                cov::dot(d, point.surface.t2) * point.normals->d2;
+            const cov::Vec3<double> predicted = cov::dot(d, point.surface.t1) * point.normals->d1 +
+                                                cov::dot(d, point.surface.t2) * point.normals->d2;
             const cov::Vec3<double> error = predicted - cov::Vec3<double>(change);
             EXPECT_LT(std::sqrt(cov::dot(error, error)), 0.02) << angle;
         }
