@@ -3,9 +3,11 @@
 import math
 
 import bpy
+import numpy as np
 
-from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .export_shaders import numbers
+from .lamp_emission import LampEmission
+from .placement import placement
 from .visibility import has_extent, hidden_from
 
 
@@ -16,34 +18,57 @@ MOST_SPREAD, LEAST_SPREAD = math.radians(179.9), math.radians(1)
 LEAST_MOVING_RADIUS = 1e-3  # of points that move: there is no other light without extent that does
 
 
-def write_lamp(out, lamp, transform, hidden, warn, moves=False):
-    """One lamp; `transform`: text that places its object (no scale in it matters but an area's); `hidden`: the kinds of rays
-    that do not find it; `moves`: whether the transform does. Rays pass a lamp, as in Cycles."""
-    colour = [c * shaded for c, shaded in zip(_power(lamp), _shader_colour(lamp, warn))]
+def write_lamp(out, lamp, matrix, end, hidden, images, warn):
+    """One lamp; `matrix`: of its object; `end`: the same when the shutter closes, or None where it stays; `hidden`: the kinds of
+    rays that do not find it; `images`: PhotometricImages. Rays pass a lamp, as in Cycles."""
+    scale = [max(matrix.col[axis].xyz.length, 1e-12) for axis in range(3)]
+    is_spot, is_ball = lamp.type == "SPOT", lamp.type in ("POINT", "SPOT")
+    has_radius = is_ball and (lamp.shadow_soft_size > 0 or end is not None)
+    colour, image = LampEmission(lamp, images, _directions(lamp, scale, has_radius), warn).read()
+    colour = [c * shaded for c, shaded in zip(_power(lamp), colour)]
     if max(colour) <= 0:
         return
-    out.write("AttributeBegin\n" + transform)
+    if lamp.type != "AREA":  # no other lamp grows with its object
+        matrix, end = matrix.normalized(), end and end.normalized()
+    out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
     if lamp.type == "SUN":
         # Blender's sun shines along -z of its object.
         out.write(f'LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [{numbers(colour)}] '
                   f'"float angle" {math.degrees(lamp.angle):.9g}{hidden_from(hidden) if has_extent(lamp) else ""}\n')
     elif lamp.type == "AREA":
         _write_area(out, lamp, colour, hidden)
-    elif lamp.type == "SPOT":
-        outer = lamp.spot_size / 2
-        inner = math.acos(math.cos(outer) + (1 - math.cos(outer)) * lamp.spot_blend)
-        cone = f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(max(outer - inner, 0)):.9g}'
-        if lamp.shadow_soft_size > 0:
-            out.write("Rotate 180 1 0 0\n")  # cones of shapes lie about +z
-            _write_ball(out, lamp, lamp.shadow_soft_size, colour, cone, hidden)
-        else:
-            intensity = numbers(c / (4 * math.pi) for c in colour)
-            out.write(f'LightSource "spot" "point3 from" [0 0 0] "point3 to" [0 0 -1] "rgb I" [{intensity}] {cone}\n')
-    elif lamp.shadow_soft_size > 0 or moves:
-        _write_ball(out, lamp, max(lamp.shadow_soft_size, LEAST_MOVING_RADIUS if moves else 0), colour, "", hidden)
     else:
-        out.write(f'LightSource "point" "rgb I" [{numbers(c / (4 * math.pi) for c in colour)}]\n')
+        cone = ""
+        if is_spot:
+            outer = lamp.spot_size / 2
+            inner = math.acos(math.cos(outer) + (1 - math.cos(outer)) * lamp.spot_blend)
+            cone = f' "float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(max(outer - inner, 0)):.9g}'
+            out.write("Rotate 180 1 0 0\n")  # cones lie about +z
+        if has_radius:
+            if is_spot:
+                cone += f' "float conestretch" [{numbers((scale[0] / scale[2], scale[1] / scale[2]))}]'
+            if image is not None:
+                cone += f' "string goniometricfilename" "{images.write(image)}"'
+            _write_ball(out, lamp, max(lamp.shadow_soft_size, 0 if end is None else LEAST_MOVING_RADIUS), colour, cone, hidden)
+        else:
+            if is_spot:
+                out.write(f"Scale {numbers(scale)}\n")
+            kind = "goniometric" if image is not None else "spot" if is_spot else "point"
+            file = f' "string filename" "{images.write(image)}"' if image is not None else ""
+            out.write(f'LightSource "{kind}" "rgb I" [{numbers(c / (4 * math.pi) for c in colour)}]{file}{cone}\n')
     out.write("AttributeEnd\n")
+
+
+def _directions(lamp, scale, has_radius):
+    """The directions of LampEmission. Cycles takes the normal of the light into the lamp's space as a surface's: times the scale."""
+    if lamp.type == "AREA":
+        return None
+    if lamp.type == "SUN":
+        return np.array((0.0, 0.0, -1.0))
+    if lamp.type == "POINT":
+        return np.diag(scale)
+    # Spots are written upside down, those without radius in a space that is scaled with them.
+    return np.diag(np.array(scale) ** (1 if has_radius else 2) * (1, -1, -1))
 
 
 def _power(lamp):
@@ -68,53 +93,8 @@ def _size(lamp):
 def _write_ball(out, lamp, radius, colour, cone, hidden):
     soft = ' "bool softfalloff" true' if bpy.app.version >= (4, 0, 0) and lamp.use_soft_falloff else ""
     radiance = numbers(c / (4 * math.pi * math.pi * radius**2) for c in colour)
-    out.write(f'AreaLightSource "diffuse" "rgb L" [{radiance}] "bool letslightpass" true{soft} {cone}\n'
+    out.write(f'AreaLightSource "diffuse" "rgb L" [{radiance}] "bool letslightpass" true{soft}{cone}\n'
               f'Shape "sphere" "float radius" {radius:.9g}{hidden_from(hidden)}\n')
-
-
-def _shader_colour(lamp, warn):
-    """Colour by which the lamp's nodes multiply its power."""
-    if not lamp.use_nodes or not lamp.node_tree:
-        return (1, 1, 1)
-    output = lamp.node_tree.get_output_node("CYCLES")
-    return _emitted(output.inputs["Surface"], lamp, warn) if output else (0, 0, 0)
-
-
-def _emitted(socket, lamp, warn):
-    """Colour that the tree of shaders at a socket emits: of each Emission the share that mixtures leave it."""
-    shader = socket.links[0].from_node if socket.is_linked else None
-    while shader is not None and shader.type == "REROUTE":
-        socket = shader.inputs[0]
-        shader = socket.links[0].from_node if socket.is_linked else None
-    if shader is None:
-        return (0, 0, 0)
-    if shader.type in ("MIX_SHADER", "ADD_SHADER"):
-        first, second = (_emitted(part, lamp, warn) for part in shader.inputs[-2:])
-        if shader.type == "ADD_SHADER":
-            return tuple(a + b for a, b in zip(first, second))
-        _tell_linked(shader.inputs[0], lamp, warn)
-        share = min(max(shader.inputs[0].default_value, 0), 1)
-        return tuple((1 - share) * a + share * b for a, b in zip(first, second))
-    if shader.type != "EMISSION":
-        if shader.type.startswith("BSDF_"):
-            return (0, 0, 0)
-        warn(f"lamp '{lamp.name}': its shader '{shader.name}' is not supported; its own colour and power are used")
-        return (1, 1, 1)
-    colour = tuple(shader.inputs["Color"].default_value)[:3]
-    for socket in shader.inputs:
-        temperature = blackbody_temperature(socket)
-        if temperature is not None:
-            colour = blackbody(temperature)
-        else:
-            _tell_linked(socket, lamp, warn)
-    strength = shader.inputs["Strength"].default_value
-    return tuple(c * strength for c in colour)
-
-
-def _tell_linked(socket, lamp, warn):
-    if socket.is_linked:
-        warn(f"lamp '{lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
-             "the socket's own value is used")
 
 
 def _corners(lamp):

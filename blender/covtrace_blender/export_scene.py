@@ -17,6 +17,7 @@ from .export_materials import MaterialExporter
 from .export_shaders import numbers
 from .export_volumes import Volumes, has_volume
 from .node_signature import hangs_on_world
+from .photometric_images import PhotometricImages
 from .placement import is_same, placement
 from .shader_nodes.light_path import RAYS
 from .texel_density import Placements
@@ -79,6 +80,7 @@ class SceneExporter:
         self.out = out
         out.write('WorldBegin\nMediumInterface "" ""\n')
         self.materials, self.atlases, self.bodies = MaterialExporter(out, self.folder, self.warn), Atlases(), {}
+        self.lamp_images = PhotometricImages(self.folder)
         self._write_world()
         self._look_at_instances()
         self._look_at_bodies()
@@ -88,7 +90,7 @@ class SceneExporter:
         self.materials.baked.keep()
         self.atlases.keep()
         self.media = self.materials.media
-        del self.materials, self.atlases, self.bodies  # their images are no use while what is written is rendered
+        del self.materials, self.atlases, self.bodies, self.lamp_images  # their images are no use while what is written is rendered
 
     def _write_world(self):
         time = self.frame if self.shutter is None else self.frame + self.shutter[0]
@@ -196,14 +198,12 @@ class SceneExporter:
             self.warn(f"lamp '{obj.name}' is a {lamp.type.lower()} and moves while the shutter is open; it stays where it is "
                       "at the opening")
             moves = False
-        if lamp.type != "AREA":
-            matrix, end = matrix.normalized(), end and end.normalized()
+
         class Scaled:
             """The lamp with its energy for an area of unit scale."""
             def __getattr__(self, name):
                 return lamp.energy * scale if name == "energy" else getattr(lamp, name)
-        export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, end if moves else None), hidden,
-                                 self.warn, moves)
+        export_lights.write_lamp(self.out, Scaled(), matrix, end if moves else None, hidden, self.lamp_images, self.warn)
 
     def _export_parts(self, obj):
         """The Parts of an evaluated object, its files and materials written."""

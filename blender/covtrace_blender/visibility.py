@@ -4,6 +4,8 @@ from .shader_nodes.light_path import RAYS
 
 _PROPERTIES = {ray: "visible_volume_scatter" if ray == "volume" else f"visible_{ray}" for ray in RAYS}
 
+MOST_BOUNCES = 1024  # of a lamp; Blender's own, which is no limit
+
 
 def hidden_from(rays):
     """The parameter of a shape or a sky that is hidden from some kinds of rays; with a space before it."""
@@ -27,6 +29,7 @@ class Visibility:
             hidden |= self._hidden(instance.parent)
         if not set(RAYS) - hidden:
             return None
+        self._note_linking(obj)
         if obj.type == "LIGHT":
             return hidden if self._is_lamp_lit(obj, hidden) else None
         if self._is_holdout(obj):
@@ -50,7 +53,16 @@ class Visibility:
             self._note("lighting diffuse, glossy and transmitting surfaces alike", obj)
         if not getattr(of_cycles, "cast_shadow", True) or not getattr(obj.data, "use_shadow", True):
             self._note("casting shadows although they should not", obj)
+        if getattr(of_cycles, "max_bounces", MOST_BOUNCES) < MOST_BOUNCES:
+            self._note("lighting by more bounces than their own limit", obj)
         return True
+
+    def _note_linking(self, obj):
+        linking = getattr(obj, "light_linking", None)  # from Blender 4.0 on
+        if linking and linking.receiver_collection:
+            self._note("lighting all objects and not those alone that they are linked to", obj)
+        if linking and linking.blocker_collection:
+            self._note("shadowed by all objects and not by those alone that they are linked to", obj)
 
     def _is_holdout(self, obj):
         return obj.is_holdout or self._of_layer(obj, "holdout_get")

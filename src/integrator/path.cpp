@@ -94,6 +94,7 @@ bool PathTracer::pass(const SurfaceHit& hit, const PlacedShape& shape) {
 
 void PathTracer::weigh(float weight) {
     beta_ *= weight;
+    weighed_ *= weight;
     colourless_beta_ *= weight;
 }
 
@@ -250,7 +251,7 @@ void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
     if (depth_ == 0) {
         result_.hit = true;
         result_.position = position;
-        result_.albedo = albedo;
+        result_.albedo = albedo * weighed_;
         result_.normal = normal;
         result_.depth = travelled_ = distance(camera_origin_, position);
     } else {

@@ -251,6 +251,7 @@ class PathTracer {
     /// Wavelength since the first dispersive glass, and whether the throughput has its colour yet.
     std::optional<SampledWavelength> wavelength_;
     bool has_wavelengths_colour_ = false;
+    float weighed_ = 1;         // product of the weights of mixtures, for the first vertex's albedo
     Rgb colourless_beta_{1};    // throughput without that colour, for the features
     float roulette_scale_ = 1;  // takes factors of refraction and guide out of beta_ for roulette
     MediumId medium_ = -1;

@@ -16,14 +16,14 @@ PointEmitter make_point_emitter(const PointLight& light, const Transform& light_
 
 PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world) {
     PointEmitter e;
-    e.is_spot = true;
     e.position = light_to_world.point(light.from);
-    e.axis = normalize(light_to_world.point(light.to) - e.position);
-    if (e.axis == Vec3{}) e.axis = normalize(light_to_world.vector({0, 0, 1}));
+    Vec3 axis = normalize(light.to - light.from);
+    if (light_to_world.vector(axis) == Vec3{}) axis = {0, 0, 1};
     e.cone = SpotCone::from_degrees(light.cone_angle, light.cone_delta_angle);
     e.intensity = light.intensity;
     if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
-    e.cone_variance = e.cone.variance();
+    e.cone = SpotCone::from_degrees(light.cone_angle, light.cone_delta_angle, light_to_world, axis);
+    e.cone_variance = e.cone->variance();
     return e;
 }
 
@@ -36,6 +36,11 @@ PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& 
         e.image = LightImage::goniometric(*light.image, light_to_world, where, warnings);
         e.image_integral = e.image->integral();
     }
+    if (light.cone) {
+        e.cone = SpotCone::from_degrees(light.cone->angle, light.cone->delta_angle, light_to_world);
+        e.cone_variance = e.cone->variance();
+        if (e.image) e.image_integral = e.image->integral(&*e.cone);
+    }
     if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
     return e;
 }
@@ -44,37 +49,38 @@ PointEmitter make_point_emitter(const ProjectionLight& light, const Transform& l
                                 const SourceLocation& where, Warnings& warnings) {
     PointEmitter e;
     e.position = light_to_world.point({});
-    e.axis = normalize(light_to_world.vector({0, 0, 1}));
     e.intensity = Rgb(light.scale);
     e.image = LightImage::slide(light.image, light.fov, light_to_world, where, warnings);
     e.image_integral = e.image->integral();
     if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
-    e.cone = {1, e.image->cos_corner()};
+    const float corner = std::acos(e.image->cos_corner()) * (180 / kPi);
+    e.cone = SpotCone::from_degrees(corner, corner, light_to_world);
     return e;
 }
 
 Rgb intensity(const PointEmitter& light, Vec3 w) {
-    if (light.image) return light.intensity * (*light.image)(w);
-    return light.is_spot ? light.intensity * light.cone.falloff(dot(light.axis, w))
-                         : light.intensity;
+    Rgb value = light.intensity;
+    if (light.image) value *= (*light.image)(w);
+    if (light.cone && !(light.image && light.image->is_slide())) value *= light.cone->falloff(w);
+    return value;
 }
 
 Rgb power(const PointEmitter& light) {
     if (light.image) return light.intensity * light.image_integral;
-    return (light.is_spot ? light.cone.solid_angle() : 4 * kPi) * light.intensity;
+    return (light.cone ? light.cone->solid_angle() : 4 * kPi) * light.intensity;
 }
 
 LightBounds bounds(const PointEmitter& light) {
     LightBounds b;
     b.box.extend(light.position);
     b.intensity = choice_weight(light.intensity);
-    b.axis = light.axis;
-    const bool is_cone = light.is_spot || (light.image && light.image->is_slide());
-    b.theta_o = is_cone ? std::acos(light.cone.cos_inner) : kPi;
-    b.theta_e = is_cone ? std::acos(light.cone.cos_outer) - b.theta_o : kPi / 2;
+    b.axis = light.cone ? light.cone->axis() : Vec3{0, 0, 1};
+    b.theta_o = light.cone ? light.cone->inner_angle() : kPi;
+    b.theta_e = light.cone ? light.cone->outer_angle() - b.theta_o : kPi / 2;
     if (light.image) {
         // The image counts with its mean: over the cone around a slide, else over all directions.
-        const float solid_angle = is_cone ? 2 * kPi * (1 - light.cone.cos_outer) : 4 * kPi;
+        const float half = light.cone ? light.cone->outer_angle() / 2 : kPi / 2;
+        const float solid_angle = 4 * kPi * sqr(std::sin(half));
         b.intensity *= choice_weight(light.image_integral) / solid_angle;
     }
     return b;

@@ -15,15 +15,16 @@ namespace covtrace {
 struct PointEmitter {
     Vec3 position;
     Rgb intensity;  ///< radiant intensity, of a spot within its inner cone
-    bool is_spot = false;
-    Vec3 axis{0, 0, 1};               ///< unit; of a spot
-    SpotCone cone;                    ///< of a spot, and around a slide
+    /// That the light stays within: of a spot, of a goniometric light that has one, and around a
+    /// slide, whose light it only bounds.
+    std::optional<SpotCone> cone;
     float cone_variance = 0;          ///< of a spot: angular variance along one axis, radians^2
     std::optional<LightImage> image;  ///< multiplies the intensity
     Rgb image_integral;               ///< of the image over all directions
 };
 PointEmitter make_point_emitter(const PointLight& light, const Transform& light_to_world);
-/// Makes a spot light. The transform's scale does not change the cone.
+/// Makes a spot light. As in pbrt-v4 its power is measured as if the transform had not stretched
+/// its cone.
 PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world);
 /// Makes a light with an image. Images that are missing, broken or of the wrong shape throw
 /// Error(scene) at `where`; colours of an unknown space are a warning.

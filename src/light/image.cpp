@@ -77,7 +77,8 @@ Rgb LightImage::operator()(Vec3 w) const {
     return at ? texel(*at) : Rgb();
 }
 
-Rgb LightImage::integral() const {
+Rgb LightImage::integral(const SpotCone* cone) const {
+    const Transform light_to_world = world_to_light_.inverse();
     double sum[3] = {};
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
@@ -88,6 +89,12 @@ Rgb LightImage::integral() const {
                              sy = ((2 * y + 1.0) / height_ - 1) * half_size_.y;
                 solid_angle = 4.0 * half_size_.x * half_size_.y / (double(width_) * height_) /
                               std::pow(1 + sx * sx + sy * sy, 1.5);
+            }
+            if (cone) {
+                const Vec3 w = equal_area_square_to_sphere(
+                    {(float(x) + 0.5f) / float(width_), (float(y) + 0.5f) / float(height_)});
+                const Vec3 world = normalize(light_to_world.vector({w.x, w.z, w.y}));
+                solid_angle *= double(cone->falloff(world));
             }
             const Rgb t = (*texels_)[static_cast<size_t>(y) * static_cast<size_t>(width_) +
                                      static_cast<size_t>(x)];

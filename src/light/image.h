@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/transform.h"
+#include "light/spot_cone.h"
 #include "light/texels.h"
 #include "scene/scene_description.h"
 
@@ -30,8 +31,9 @@ class LightImage {
     /// The value of the texel that the world direction w (unit, away from the light) falls into;
     /// black beside a slide.
     Rgb operator()(Vec3 w) const;
-    /// Integral of the image over all directions, by solid angle.
-    Rgb integral() const;
+    /// Integral of the image, times the factor of a goniometric light's cone, if there is one, over
+    /// all directions, by solid angle.
+    Rgb integral(const SpotCone* cone = nullptr) const;
     /// Whether this is the image of a projection light.
     bool is_slide() const { return half_size_.x > 0; }
     /// Cosine of the angle between a slide's axis and its corners; means nothing for other images.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/leave_surface.h"
+#include "light/directed.h"
 #include "light/lights_impl.h"
 #include "light/weight.h"
 
@@ -49,22 +50,6 @@ bool is_hidden(const SceneDescription& scene, TextureId alpha) {
     const auto* constant =
         std::get_if<ConstantTexture>(&scene.textures[static_cast<size_t>(alpha)].value);
     return constant && constant->value.r == 0;
-}
-
-void set_cone(AreaLight& area, const AreaLightDescription::Cone& cone,
-              const ShapeDescription& shape) {
-    area.cone = cone.is_grid ? SpotCone::grid(cone.angle)
-                             : SpotCone::from_degrees(cone.angle, cone.delta_angle);
-    area.cone_variance = area.cone->variance();
-    area.cone_axis = normalize(shape.object_to_world.start().vector({0, 0, 1}));
-}
-
-/// Leaves of a light's directions those within its cone.
-void narrow(LightBounds& bounds, const AreaLight& area) {
-    bounds.axis = area.cone_axis;
-    bounds.theta_o = std::acos(area.cone->cos_inner);
-    bounds.theta_e = std::acos(area.cone->cos_outer) - bounds.theta_o;
-    bounds.two_sided = false;
 }
 
 }  // namespace
@@ -115,8 +100,8 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
             area.mean_factor *= alpha;
             choice_factor *= std::max(alpha, kLeast);
         }
-        if (light.cone) set_cone(area, *light.cone, shape);
-        if (light.soft_falloff) area.soft_radius = sphere_radius(area.emitter);
+        direct(area, light, shape, warnings);
+        choice_factor *= mean_over_directions(area);
         if (!note_kinds(area.visible_to)) choice_factor = {};
         std::visit(
             [&](const auto& emitter) {
@@ -237,7 +222,8 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
 
 Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const {
     Rgb share = area.layers < 0 ? Rgb(1) : emission_share(area.layers, at, std::abs(dot(n, w)));
-    if (area.cone) share *= area.cone->falloff(dot(area.cone_axis, w));
+    if (area.cone) share *= area.cone->falloff(w);
+    if (area.directions) share *= (*area.directions)(w);
     const Rgb radiance = share * area.radiance;
     return area.image < 0 ? radiance : radiance * textures->eval(area.image, at);
 }
@@ -361,7 +347,7 @@ std::vector<DistantView> Lights::distant_views() const {
         DistantView view;
         view.visible_to = area.visible_to;
         view.cone = area.cone;
-        view.cone_axis = area.cone_axis;
+        view.directions = area.directions;
         view.radiance = luminance(area.radiance * area.mean_factor);
         std::visit(
             [&](const auto& emitter) {
@@ -382,8 +368,7 @@ Rgb Lights::total_power() const {
     Rgb sum;
     for (const AreaLight& area : impl_->area_lights)
         if ((area.visible_to & kScatteredRays) != 0)
-            sum += static_cast<float>(total_area(area.emitter)) *
-                   (area.cone ? area.cone->solid_angle() / (4 * kPi) : 1.0f) *
+            sum += static_cast<float>(total_area(area.emitter)) * share_let_through(area) *
                    exitance(area.radiance * area.mean_factor, area.two_sided);
     for (const PointEmitter& point : impl_->points) sum += power(point);
     const float radius = impl_->geometry->bounds().radius();

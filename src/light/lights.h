@@ -8,6 +8,7 @@
 
 #include "geometry/geometry.h"
 #include "light/environment_map.h"
+#include "light/image.h"
 #include "light/sky_cell.h"
 #include "light/spot_cone.h"
 #include "light/tree.h"
@@ -41,11 +42,14 @@ struct DistantView {
     float intensity = 0;
     float radiance = 0;  ///< luminance, mean over the shape
     RayKinds visible_to = kEveryRay;
-    std::optional<SpotCone> cone = {};  ///< that the light stays within
-    Vec3 cone_axis;                     ///< unit
+    std::optional<SpotCone> cone = {};          ///< that the light stays within
+    std::optional<LightImage> directions = {};  ///< factor by direction
 
-    /// Share of its light that it sends in the unit direction w.
-    float share_towards(Vec3 w) const { return cone ? cone->falloff(dot(cone_axis, w)) : 1; }
+    /// Factor on its light that it sends in the unit direction w.
+    float share_towards(Vec3 w) const {
+        const float share = cone ? cone->falloff(w) : 1;
+        return directions ? share * luminance((*directions)(w)) : share;
+    }
 };
 
 /// Share of the light of an emissive shape that gets through the layers above it, at a place and

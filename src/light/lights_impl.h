@@ -23,16 +23,16 @@ struct AreaLight {
     TextureId image = -1, alpha = -1;  ///< textures that the radiance varies by; -1: none
     bool is_visible = true;  ///< false where a constant alpha of 0 hides the shape from all rays
     RayKinds visible_to = kEveryRay;
-    std::optional<SpotCone> cone;  ///< that the light stays within
-    float cone_variance = 0;       ///< SpotCone::variance
-    Vec3 cone_axis;                ///< unit
-    float soft_radius = 0;         ///< of a sphere with AreaLightDescription::soft_falloff; 0: none
-    MaterialId layers = -1;        ///< material whose layers the light has to get through; -1: none
-    Rgb mean_factor{1};            ///< mean of image and alpha together
-    int first_light = 0;           ///< id of its first light
+    std::optional<SpotCone> cone;          ///< that the light stays within
+    float cone_variance = 0;               ///< SpotCone::variance
+    std::optional<LightImage> directions;  ///< factor by the direction that the light leaves in
+    float soft_radius = 0;   ///< of a sphere with AreaLightDescription::soft_falloff; 0: none
+    MaterialId layers = -1;  ///< material whose layers the light has to get through; -1: none
+    Rgb mean_factor{1};      ///< mean of image and alpha together
+    int first_light = 0;     ///< id of its first light
     Emitter emitter;
 
-    bool varies() const { return image >= 0 || alpha >= 0 || layers >= 0 || cone; }
+    bool varies() const { return image >= 0 || alpha >= 0 || layers >= 0 || cone || directions; }
 };
 
 /// The balance between all infinite lights and all finite ones at a point, for choosing among them.
@@ -44,10 +44,10 @@ struct InfiniteShare {
     float even = 1;
 };
 
-/// The radius in world space of an emitter that is a sphere; 0 for others.
+/// The radius in world space of an emitter that is a whole sphere; 0 for others.
 inline float sphere_radius(const Emitter& emitter) {
     const auto* ball = std::get_if<EmissiveQuadric>(&emitter);
-    return ball && ball->is_sphere() ? std::sqrt(ball->area(0) / (4 * kPi)) : 0.0f;
+    return ball && ball->is_whole_sphere() ? std::sqrt(ball->area(0) / (4 * kPi)) : 0.0f;
 }
 
 struct Lights::Impl {
@@ -61,7 +61,7 @@ struct Lights::Impl {
         const float d2 = length_squared(centre - p);
         return std::isfinite(d2) ? d2 / (d2 + sqr(area.soft_radius)) : 1;
     }
-    /// Radiance of an area light at a place with the unit normal n, by its image, its cone and the
+    /// Radiance of an area light at a place with the unit normal n, by its images, its cone and the
     /// layers above it, in a unit direction w away from it; alpha does not count.
     Rgb radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const;
 

@@ -31,6 +31,7 @@ class EmissiveQuadric {
     LightBounds bounds(int light) const;
 
     bool is_sphere() const { return is_sphere_; }
+    bool is_whole_sphere() const;
     /// Curvature seen from the outside at `time`, 1 / scene unit: positive where convex; 0 for
     /// disks.
     float curvature(float time) const;
@@ -58,7 +59,6 @@ class EmissiveQuadric {
     }
     ObjectPoint point(Vec2 u) const;  // a point of the surface, uniform by area in object space
     float object_area() const;
-    bool is_whole_sphere() const;
     bool seen_as_cone(const Pose& pose, Vec3 p, float& distance_squared) const;
     std::optional<EmitterPoint> sample_cone(const Pose& pose, Vec3 p, float distance_squared,
                                             Vec2 u) const;

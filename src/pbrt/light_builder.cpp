@@ -67,15 +67,27 @@ void read_cone(ParameterList& p, const SourceLocation& where, float& angle, floa
 /// Reads the angle of the grid before an area light, degrees.
 AreaLightDescription::Cone grid(ParameterList& p, const SourceLocation& where) {
     const float angle = p.number("gridangle", 90);
-    if (!(angle > 0 && angle <= 90))
+    // Directions of single precision are off by 6e-8 radian, 0.3 % of this angle.
+    constexpr float kLeastDegrees = 0.001f;
+    if (!(angle >= kLeastDegrees && angle <= 90))
         throw Error(ErrorKind::scene, p.where("gridangle", where),
-                    "parameter \"gridangle\" must be between 0 and 90 degrees");
+                    "parameter \"gridangle\" must be between 0.001 and 90 degrees");
     for (const char* other : {"coneangle", "power"})
         if (p.has(other))
             throw Error(ErrorKind::scene, p.where(other, where),
                         "an area light has both " + in_quotes(other) +
                             " and \"gridangle\"; expected one of them");
-    return {angle, 0, true};
+    return {.angle = angle, .delta_angle = 0, .is_grid = true};
+}
+
+/// Reads the factors by which an area light's cone is wider along x and y.
+Vec2 cone_stretch(ParameterList& p, const SourceLocation& where) {
+    const std::vector<float> values = p.numbers("conestretch");
+    if (values.empty()) return {1, 1};
+    if (values.size() != 2 || !(values[0] > 0) || !(values[1] > 0))
+        throw Error(ErrorKind::scene, p.where("conestretch", where),
+                    "parameter \"conestretch\" must be two numbers above 0");
+    return {values[0], values[1]};
 }
 
 SpotLight spot_light(Entity& e, BuildContext& context) {
@@ -154,6 +166,10 @@ GoniometricLight goniometric_light(Entity& e, BuildContext& context) {
         context.log.add(e.where, "a goniometric light has no image; it shines alike to all sides");
     else
         light.image = context.files.find(file, e.parameters.where("filename", e.where));
+    if (e.parameters.has("coneangle")) {
+        light.cone = ConeDescription{};
+        read_cone(e.parameters, e.where, light.cone->angle, light.cone->delta_angle);
+    }
     return light;
 }
 
@@ -220,6 +236,7 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
                 "cone");
         light.cone = AreaLightDescription::Cone{};
         read_cone(p, e.where, light.cone->angle, light.cone->delta_angle);
+        light.cone->stretch = cone_stretch(p, e.where);
     }
     if (p.has("gridangle")) light.cone = grid(p, e.where);
     if (const std::string file = p.text("filename"); !file.empty()) {
@@ -232,6 +249,13 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
         image.wrap = ImageTexture::Wrap::clamp;
         light.image = static_cast<TextureId>(context.scene.textures.size());
         context.scene.textures.push_back({{}, true, image, where});
+    }
+    if (const std::string file = p.text("goniometricfilename"); !file.empty()) {
+        if (light.power)
+            throw Error(ErrorKind::scene, p.where("power", e.where),
+                        "an area light has both \"power\" and \"goniometricfilename\"; expected "
+                        "\"L\" beside an image over its directions");
+        light.goniometric = context.files.find(file, p.where("goniometricfilename", e.where));
     }
     p.warn_unused(context.log, "area light \"diffuse\"");
     return light;

@@ -50,6 +50,34 @@ MaterialId MaterialBuilder::find(const MaterialReference& reference) {
                     did_you_mean(reference.name, known));
 }
 
+namespace {
+
+/// Whether surfaces of a type can lie under layers (has_layers of src/shading/material_layers.h).
+bool bears_layers(const std::string& type) {
+    return type != "hair" && type != "diffusetransmission" && type != "coatedconductor" &&
+           type != "measured";
+}
+
+/// For materials without layers: warns once of what asks for them.
+MaterialLayers no_layers(Entity& entity, BuildContext& context) {
+    ParameterList& p = entity.parameters;
+    std::string names;
+    SourceLocation where = entity.where;
+    for (const char* name : {"coat", "sheen"}) {
+        if (!p.has(name)) continue;
+        if (names.empty()) where = p.where(name, where);
+        names += (names.empty() ? "" : " and ") + in_quotes(name);
+    }
+    if (names.empty()) return {};
+    context.log.add(where, "a material " + in_quotes(entity.type) + " has no layers; " + names +
+                               (names.find(" and ") == std::string::npos ? " is" : " are") +
+                               " ignored");
+    p.ignore({"coat", "coatroughness", "coateta", "coattint", "sheen", "sheenroughness"});
+    return {};
+}
+
+}  // namespace
+
 MaterialId MaterialBuilder::build(Declared& d) {
     if (d.id >= 0) return d.id;
     if (d.in_progress)
@@ -63,7 +91,9 @@ MaterialId MaterialBuilder::build(Declared& d) {
     if (d.entity.type == "mix") {
         d.id = build_mix(d);
     } else {
-        const MaterialLayers layers = material_layers(d.entity, textures_, context_);
+        const MaterialLayers layers = bears_layers(d.entity.type)
+                                          ? material_layers(d.entity, textures_, context_)
+                                          : no_layers(d.entity, context_);
         const NormalMaps maps = normal_maps(d.entity, textures_, context_);
         MaterialDescription m{d.name,
                               material_model(d.entity, textures_, context_),

@@ -20,8 +20,7 @@ struct NormalMaps {
 };
 NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
 
-/// Layers over a material, by parameters of ours that every type of material has but "mix" and
-/// interfaces.
+/// Layers over a material, by parameters of ours.
 struct MaterialLayers {
     std::optional<SheenLayer> sheen;
     std::optional<ClearcoatLayer> clearcoat;

@@ -30,6 +30,8 @@ std::vector<fs::path> image_files(const SceneDescription& scene) {
         if (const auto* l = std::get_if<InfiniteLight>(&light.value); l && l->image)
             files.insert(*l->image);
     }
+    for (const AreaLightDescription& light : scene.area_lights)
+        if (light.goniometric) files.insert(*light.goniometric);
     return {files.begin(), files.end()};
 }
 

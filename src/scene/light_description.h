@@ -14,6 +14,10 @@
 
 namespace covtrace {
 
+/// The half angle that a light stays within, and over how much of it the light falls off.
+struct ConeDescription {
+    float angle = 30, delta_angle = 5;
+};
 struct PointLight {
     Rgb intensity{1};
     std::optional<float> power;  ///< of all directions, in place of the intensity's size
@@ -30,6 +34,7 @@ struct GoniometricLight {
     Rgb intensity{1};
     std::optional<float> power;  ///< of all directions, in place of the intensity's size
     std::optional<std::filesystem::path> image;
+    std::optional<ConeDescription> cone = {};  ///< about the z axis, as a SpotLight's
 };
 /// A slide projector at the origin that looks along +z.
 struct ProjectionLight {

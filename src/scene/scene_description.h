@@ -232,15 +232,19 @@ struct AreaLightDescription {
     /// go on, and it casts no shadow.
     bool lets_light_pass = false;
     /// A cone about the z axis of the shape's space that light stays within as a SpotLight's, or as
-    /// a grid of slats leaves it (SpotCone::is_grid).
+    /// a grid of slats leaves it (SpotCone::grid).
     struct Cone {
         float angle = 30, delta_angle = 5;
         bool is_grid = false;
+        Vec2 stretch{1, 1};  ///< factors along x and y by which a cone is wider; not of grids
     };
     std::optional<Cone> cone = {};
     /// Whether places are lit by a sphere as by a disc of the same radius and radiance that faces
     /// them, which is less light than a sphere's where the distance is not much more.
     bool soft_falloff = false;
+    /// An image over the directions that the light leaves in, as a GoniometricLight has one; it
+    /// multiplies the radiance.
+    std::optional<std::filesystem::path> goniometric = {};
 };
 
 /// Moves the vertices of a mesh along their normals, after its triangles have been split.

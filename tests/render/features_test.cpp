@@ -44,6 +44,15 @@ double mean(const Image& image, const std::string& channel) {
 constexpr const char* kMirror =
     R"("conductor" "rgb reflectance" [ 0.9 0.9 0.9 ] "float roughness" 0)";
 
+TEST(Features, SumsHaveTheAlbedoOfBothParts) {
+    const Image image = tilted_wall(R"("diffuse"
+MakeNamedMaterial "a" "string type" "diffuse" "rgb reflectance" [ 0.4 0.4 0.4 ]
+MakeNamedMaterial "b" "string type" "diffuse" "rgb reflectance" [ 0.2 0.2 0.2 ]
+Material "mix" "string materials" [ "a" "b" ] "float weight" 2)");
+    EXPECT_NEAR(middle_mean(image, "albedo.G"), 0.6, 0.02);
+    EXPECT_NEAR(middle_mean(image, "featurealbedo.G"), 0.6, 0.02);
+}
+
 TEST(Features, AMirrorShowsTheCardThatItReflects) {
     const Image image = tilted_wall(kMirror);
     const double mirror = mean(image, "albedo.R");

@@ -183,21 +183,20 @@ TEST(Emission, SpotsWithMoreFalloffThanConeShineWithinTheDifference) {
     EXPECT_EQ(at(21), 0);
 }
 
-TEST(Emission, GridsLeaveTheShareBetweenTheirSlats) {
-    const SpotCone grid = SpotCone::grid(50);
-    const float limit = std::tan(50 * kPi / 180);
-    double sum = 0;
-    constexpr int kSteps = 10000;
-    for (int i = 0; i < kSteps; ++i) {
-        const double angle = (i + 0.5) / kSteps * M_PI / 2;
-        const auto f = grid.falloff(static_cast<float>(std::cos(angle)));
-        // Near the axis the cosine of single precision tells the angle to 3e-4
-        EXPECT_NEAR(f, std::max(0.0, 1 - std::tan(angle) / double(limit)), 5e-4);
-        sum += 2 * M_PI * std::sin(angle) * double(f) * (M_PI / 2 / kSteps);
+TEST(Emission, SoftFalloffOfWhatIsNoBallIsTold) {
+    for (const bool is_ball : {true, false}) {
+        LightScene s;
+        s.add(is_ball ? shape_of(whole_sphere(1)) : shape_of(Disk{}), Rgb(2));
+        s.description.area_lights[0].soft_falloff = true;
+        s.build();
+        EXPECT_EQ(s.lights->warnings().size(), is_ball ? 0u : 1u);
     }
-    EXPECT_NEAR(grid.solid_angle(), sum, 1e-4);
-    EXPECT_NEAR(SpotCone::grid(90).falloff(0.5f), 1, 1e-5f);
-    EXPECT_NEAR(SpotCone::grid(90).solid_angle(), 2 * kPi, 1e-3f);
+    LightScene part;
+    part.add(shape_of(Sphere{.radius = 1, .z_min = 0, .z_max = 1}), Rgb(2));
+    part.description.area_lights[0].soft_falloff = true;
+    part.build();
+    EXPECT_EQ(part.lights->warnings().size(), 1u);
+    EXPECT_EQ(seen(part, {0, 0, 1.5f}, {0, 0, 0}), Rgb(2));
 }
 
 TEST(Emission, SoftFalloffIsThatOfADiscThatFacesThePlace) {

@@ -53,5 +53,18 @@ TEST(SceneHair, TheFirstDescriptionPigmentCounts) {
     }
 }
 
+TEST(SceneHair, LayersThatAMaterialHasNotAreToldOnce) {
+    for (const char* type : {"hair", "diffusetransmission", "coatedconductor"}) {
+        const auto made = material_of("\"" + std::string(type) +
+                                      "\" \"float coat\" 1 \"float coatroughness\" 0.1 "
+                                      "\"rgb sheen\" [ 1 1 1 ]");
+        ASSERT_EQ(made.scene.warnings.size(), 1u) << warnings_of(made.scene);
+        EXPECT_NE(made.scene.warnings[0].text.find("\"coat\" and \"sheen\" are ignored"),
+                  std::string::npos);
+        EXPECT_FALSE(made.material.sheen || made.material.clearcoat);
+    }
+    EXPECT_TRUE(material_of("\"diffuse\" \"float coat\" 1").scene.warnings.empty());
+}
+
 }  // namespace
 }  // namespace covtrace::test

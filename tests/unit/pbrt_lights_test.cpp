@@ -97,6 +97,9 @@ TEST(SceneLights, AreaLightsMayHaveACone) {
     EXPECT_EQ(cone->angle, 40);
     EXPECT_EQ(cone->delta_angle, 12);
     EXPECT_FALSE(cone->is_grid);
+    EXPECT_EQ(cone->stretch, (Vec2{1, 1}));
+    EXPECT_EQ(cone_of("\"float coneangle\" 40 \"float conestretch\" [2 0.5]")->stretch,
+              (Vec2{2, 0.5f}));
     const auto grid = cone_of("\"float gridangle\" 25");
     ASSERT_TRUE(grid.has_value());
     EXPECT_EQ(grid->angle, 25);
@@ -235,7 +238,10 @@ TEST(SceneLights, ErrorsNameThePlace) {
         {"AreaLightSource \"diffuse\" \"float coneangle\" 200", "between 0 and 180"},
         {"AreaLightSource \"diffuse\" \"float coneangle\" 20 \"float power\" 3",
          "both \"power\" and \"coneangle\""},
-        {"AreaLightSource \"diffuse\" \"float gridangle\" 91", "between 0 and 90"},
+        {"AreaLightSource \"diffuse\" \"float gridangle\" 91", "between 0.001 and 90"},
+        {"AreaLightSource \"diffuse\" \"float gridangle\" 0.0009", "between 0.001 and 90"},
+        {"AreaLightSource \"diffuse\" \"float coneangle\" 20 \"float conestretch\" [1 0]",
+         "two numbers above 0"},
         {"AreaLightSource \"diffuse\" \"float gridangle\" 20 \"float power\" 3",
          "both \"power\" and \"gridangle\""},
         {"AreaLightSource \"diffuse\" \"float gridangle\" 20 \"float coneangle\" 3",
