@@ -48,3 +48,15 @@ class LampSettingsTest(CyclesTest):
             self.assert_as_cycles_with("POINT", 0.03, energy=100, shadow_soft_size=0.5, use_soft_falloff=soft, location=(0.3, 0, 0.8))
             # The edge of a cone is as wide as the lamp, a ball's here and a disc's there.
             self.assert_as_cycles_with("SPOT", 0.04, energy=100, shadow_soft_size=0.4, spot_size=2, use_soft_falloff=soft, location=(0.3, 0, 2))
+
+    @unittest.skipIf(bpy.app.version < (4, 0), "Blender before 4.0")
+    def test_links_and_limits_of_lamps_are_told(self):
+        lamp = self.lamp("POINT", energy=100)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        lamp.light_linking.receiver_collection = bpy.data.collections.new("lit")
+        lamp.light_linking.blocker_collection = bpy.data.collections.new("shading")
+        lamp.data.cycles.max_bounces = 2
+        lamp.data.update_tag()
+        self.export()
+        self.assertEqual(len(self.warnings), 3, self.warnings)
