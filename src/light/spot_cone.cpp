@@ -156,7 +156,7 @@ float SpotCone::solid_angle() const {
         return static_cast<float>(M_PI * (double(inner_) + double(outer_)));
     // Integral of sin (1 - tan / tan(outer)) over the angle, in closed form; its series below a
     // hundredth of a radian, where that loses digits
-    const double c = 1 - double(outer_), t = double(grid_tangent_), s = t * c;
+    const double t = double(grid_tangent_), c = 1 / std::sqrt(1 + t * t), s = t * c;
     if (s < 0.01) return static_cast<float>(M_PI / 3 * s * s);
     return static_cast<float>(2 * M_PI * (double(outer_) - (std::log((1 + s) / c) - s) / t));
 }

@@ -37,7 +37,8 @@ TEST(SpotCone, NarrowGridsAreAsPreciseAsDirections) {
         const double outer = double(degrees) * M_PI / 180;
         const auto half = static_cast<float>(outer / 2);
         const Vec3 w = normalize(frame.to_world({std::sin(half), 0, std::cos(half)}));
-        EXPECT_NEAR(grid.falloff(w), 0.5, 2e-7 / outer) << degrees;
+        EXPECT_NEAR(grid.falloff(w), 1 - std::tan(outer / 2) / std::tan(outer), 2e-7 / outer)
+            << degrees;
         EXPECT_NEAR(grid.solid_angle() / (M_PI / 3 * outer * outer), 1, 1e-4) << degrees;
         // Half the mean squared angle, weighted by 1 - t / outer
         EXPECT_NEAR(double(grid.variance()) / (0.15 * outer * outer), 1, 0.01) << degrees;
