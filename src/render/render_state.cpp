@@ -121,7 +121,12 @@ std::map<std::string, size_t> RenderState::memory() const {
 }
 
 CovarianceBuffer RenderState::covariance() const {
-    if (const auto* parts = std::get_if<CovarianceBuffers>(&covariances)) return merge(*parts);
+    const auto* parts = std::get_if<CovarianceBuffers>(&covariances);
+    // As it is once it is packed: a budget of time asks within the pilot already, and changes no
+    // image.
+    if (parts && method == Method::hybrid)
+        return unpack(packed_merge(*parts), region.width(), region.height());
+    if (parts) return merge(*parts);
     return unpack(std::get<std::vector<PackedCovariance>>(covariances), region.width(),
                   region.height());
 }

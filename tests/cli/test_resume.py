@@ -158,6 +158,17 @@ class MoreSamples(FilmTest):
                 cut += 1
         self.assertGreater(cut, 0)
 
+    def test_a_time_that_is_not_reached_changes_nothing(self):
+        for method in METHODS:
+            for options in (["--spp", "16"], ["--spp", "16", "--cov-spp", "0.3"], ["--spp", "16", "--cov-spp", "3"]):
+                if method == "uniform":
+                    options = options[:2]
+                with self.subTest(method=method, options=options):
+                    options = [*options, "--denoiser", "none"]
+                    self.run_render("sky", method, *options, "--time", "1h")
+                    self.run_render("sky", method, *options, output="whole.exr")
+                    self.assert_identical("whole.exr", "out.exr")
+
     def test_any_other_count_is_reached_too(self):
         for method in METHODS:
             with self.subTest(method=method):
