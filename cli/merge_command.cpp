@@ -65,6 +65,7 @@ int merge_films(MergeArguments a) {
             const bool insists = a.denoiser.choice == DenoiserChoice::oidn;
             RenderOptions of_films;
             of_films.method = state.method;
+            of_films.denoiser_quality = a.denoiser.quality;
             for (const std::string& text : idle_options(of_films, insists))
                 say("warning: {}\n", text);
             warn_of_failed_denoiser(image);

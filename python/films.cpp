@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bindings.h"
@@ -66,7 +67,7 @@ struct Merged {
 
 Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
                    const std::optional<LayerSelection>& layers, const DenoiserSearch& search,
-                   DenoiserQuality quality, bool makes_image, int threads) {
+                   std::optional<DenoiserQuality> quality, bool makes_image, int threads) {
     const ThreadLimit limit(threads);
     FilmMerge merge;
     for (const fs::path& file : films) merge.add(file.string(), read_film(file));
@@ -84,11 +85,12 @@ Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
     const FoundDenoiser denoiser =
         state.method == Method::hybrid ? find_denoiser(search) : FoundDenoiser{};
     Image& image = merged.image;
-    image = develop(state, denoiser.denoiser.get(), quality);
+    image = develop(state, denoiser.denoiser.get(), quality.value_or(DenoiserQuality::high));
     const auto warn = [&](const std::string& text) { merged.warnings.push_back({{}, text}); };
     if (denoiser.is_unusable) warn("no denoiser is used: " + denoiser.why_none);
     RenderOptions of_films;
     of_films.method = state.method;
+    of_films.denoiser_quality = quality;
     for (const std::string& text : idle_options(of_films, search.choice == DenoiserChoice::oidn))
         warn(text);
     if (const auto it = image.metadata.find("covtrace:denoiserFailure"); it != image.metadata.end())
@@ -103,7 +105,7 @@ Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
 py::tuple merge(const std::vector<fs::path>& films, const py::dict& o) {
     const std::optional<LayerSelection> layers = layer_selection(o);
     const DenoiserSearch search = denoiser_search(o);
-    const DenoiserQuality quality = denoiser_quality(o).value_or(DenoiserQuality::high);
+    const std::optional<DenoiserQuality> quality = denoiser_quality(o);
     const bool makes_image = value_of<bool>(o, "image", "True or False");
     const int threads = thread_count(o);
     const fs::path film =

@@ -1,5 +1,7 @@
 #include "render/scene_analysis.h"
 
+#include "render/ranks.h"
+
 namespace covtrace {
 
 SceneAnalysis::SceneAnalysis(RenderJob& job) : job_(job) {
@@ -9,8 +11,10 @@ SceneAnalysis::SceneAnalysis(RenderJob& job) : job_(job) {
     }
     // The slack of latest_end() is for samples that an image needs. A film that is kept has no
     // covariances of an analysis that time cut short: it could not go on to the same image as
-    // without an end.
-    const double end = job.keeping.keep ? kInfinity : job.tracing_end();
+    // without an end. Of several processes the first one keeps it for all.
+    const bool keeps = bool(job.keeping.keep);
+    const Ranks* ranks = job.keeping.ranks;
+    const double end = (ranks ? ranks->any(keeps) : keeps) ? kInfinity : job.tracing_end();
     const auto cancelled = [&job, end] {
         return job.monitor.cancelled() || job.monitor.elapsed() >= end;
     };

@@ -148,11 +148,20 @@ class Choice(DenoiserTest):
     def test_quality_changes_nothing_without_hybrid(self):
         result, _ = self.hybrid("--denoiser-quality", "fast", method="uniform")
         self.assertIn("--denoiser-quality changes nothing", result.stderr)
+        self.hybrid("--film", "a.film", method="uniform")
+        merged = self.run_program("merge", "a.film", "-o", "merged.exr", "--denoiser-quality", "fast")
+        self.assertIn("--denoiser-quality changes nothing", merged.stderr)
 
     def test_time_that_is_enough(self):
         """Samples that end long before the time leave enough for high quality."""
         _, stats = self.hybrid("--denoiser-library", fake("slow"), "--time", "60", spp="4")
         self.assertEqual(stats["denoiser"]["quality"], "high")
+
+    def test_time_that_ends_within_the_first_paths(self):
+        """What comes late is no image of high quality, which would come later still."""
+        result, stats = self.hybrid("--denoiser-library", fake("good"), "--time", "0.01", "--resolution", "600x500", spp="64")
+        self.assertIn("before every pixel had the samples", result.stderr)
+        self.assertNotEqual(stats["denoiser"].get("quality"), "high")
 
     def test_too_little_time(self):
         """The time of a reconstruction with the denoiser is told by a part of the image."""

@@ -47,6 +47,12 @@ class Ranks(FilmTest):
         error = ["--error", "0.05", "--denoiser", "oidn", "--denoiser-library", str(good)]
         self.run_ranks(2, "sky", "hybrid", *error)
 
+    def test_first_paths_that_time_cut_short_are_the_beginning_of_one_call(self):
+        self.run_ranks(2, "sky", "hybrid", "--time", "0.1", "--film", "cut.film")
+        self.run_render("sky", "hybrid", "--spp", "4", "--checkpoint", "cut.film", "--resume")
+        self.run_render("sky", "hybrid", "--spp", "4", output="whole.exr")
+        self.assert_identical("whole.exr", "out.exr")
+
     def test_an_error_of_one_rank_ends_all(self):
         for arguments, code in ((["-o", "none/x.exr"], USAGE), (["--tev", "not an address:x"], USAGE), (["--stats", "none/s.json"], USAGE)):
             with self.subTest(arguments=arguments):

@@ -49,6 +49,11 @@ class HybridRender {
     /// Reconstructs the image from the samples and makes its layers.
     void deliver() {
         if (!job_.delivers()) return;
+        if (denoiser_ && job_.options.seconds &&
+            !times_) {  // time ended before a round was planned
+            predict();
+            reserve_time();
+        }
         reconstruct_image(true);
         if (is_denoiser_too_slow_)
             image_->denoiser_failure = "it takes longer than the time that was left";
@@ -146,7 +151,7 @@ class HybridRender {
         reserve_time();
         // Go on with the pilot where a budget ended within it
         if (s_.taken < pilot()) {
-            const double rest = job_.plan_round(pilot());
+            const double rest = job_.keeping.shard.is_all() ? job_.plan_round(pilot()) : pilot();
             return rest > s_.taken && job_.begin_round(rest, pilot_counts(rest));
         }
         const double target = job_.plan_round(std::min(round_end(s_.taken), enough_samples()));
