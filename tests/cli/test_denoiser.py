@@ -158,7 +158,7 @@ class Choice(DenoiserTest):
         self.assertEqual(stats["denoiser"]["quality"], "high")
 
     def test_time_that_ends_within_the_first_paths(self):
-        """What comes late is no image of high quality, which would come later still."""
+        """An image that comes late anyway is not one of high quality, which would come later still."""
         result, stats = self.hybrid("--denoiser-library", fake("good"), "--time", "0.01", "--resolution", "600x500", spp="64")
         self.assertIn("before every pixel had the samples", result.stderr)
         self.assertNotEqual(stats["denoiser"].get("quality"), "high")
