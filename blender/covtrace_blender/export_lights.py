@@ -23,6 +23,8 @@ def write_lamp(out, lamp, matrix, end, hidden, images, warn):
     rays that do not find it; `images`: PhotometricImages. Rays pass a lamp, as in Cycles."""
     scale = [max(matrix.col[axis].xyz.length, 1e-12) for axis in range(3)]
     is_spot, is_ball = lamp.type == "SPOT", lamp.type in ("POINT", "SPOT")
+    if is_spot and bpy.app.version < (4, 0, 0):  # Cycles 3.4 takes nothing of a spot's scale, 4.5 does
+        scale = [1.0, 1.0, 1.0]
     has_radius = is_ball and (lamp.shadow_soft_size > 0 or end is not None)
     colour, image = LampEmission(lamp, images, _directions(lamp, scale, has_radius), warn).read()
     colour = [c * shaded for c, shaded in zip(_power(lamp), colour)]

@@ -3,6 +3,7 @@
 import math
 import os
 import tempfile
+import unittest
 
 import bpy
 from addon_support import CyclesTest, mean, render
@@ -71,10 +72,14 @@ class PhotometryTest(CyclesTest):
         for a, b in zip(*pictures):
             self.assertAlmostEqual(a / b, 1, delta=1e-3)
 
-    def test_lamps_with_a_radius_spots_and_scales(self):
+    def test_lamps_with_a_radius_and_scales(self):
         text = ies(range(0, 181, 10), range(0, 361, 15), one_sided)
         self.assert_lamp_as_cycles("POINT", text, shadow_soft_size=0.2)
         self.assert_lamp_as_cycles("POINT", text, shadow_soft_size=0.2, scale=(2, 1, 1))
+
+    @unittest.skipIf(bpy.app.version < (4, 0), "spots before 4.0 have other edges")
+    def test_spots_and_scales(self):
+        text = ies(range(0, 181, 10), range(0, 361, 15), one_sided)
         for radius in (0, 0.2):
             for scale in ((1, 1, 1), (1.5, 1, 0.8)):
                 self.assert_lamp_as_cycles("SPOT", text, tolerance=0.04, shadow_soft_size=radius, spot_size=1.8, spot_blend=0.4, scale=scale)
@@ -118,6 +123,7 @@ class PhotometryTest(CyclesTest):
             self.assertIn(what, self.warnings[0])
             self.assertIn('LightSource "point"', text)
 
+    @unittest.skipIf(bpy.app.version < (4, 0), "spots before 4.0 have other edges")
     def test_spots_of_objects_that_are_scaled(self):
         for scale in ((0.5, 1, 1), (2, 1, 1), (1, 1, 2), (0.5, 0.5, 0.5)):
             for radius in (0, 0.2):
