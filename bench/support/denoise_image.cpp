@@ -2,7 +2,10 @@
 // guided by albedo and normal that are freed of their noise before (`cleanAux`). These are the
 // layers featurealbedo and featureN, or albedo and N of an image that has none.
 //
-//     denoise_image IMAGE.exr DENOISED.exr
+//     denoise_image IMAGE.exr DENOISED.exr [thorough|draft|none [draft]]
+//
+// The third argument says how the features are cleaned, the fourth makes the image itself a draft
+// (docs/decisions/0147).
 //
 // IMAGE.exr is any image of `covtrace render` with its layers; for those of `--method hybrid` the
 // layer `raw` is denoised. Prints the seconds that the denoiser took. The library is looked for as
@@ -10,6 +13,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <map>
+#include <string>
 
 #include "core/error.h"
 #include "image/image.h"
@@ -33,8 +38,13 @@ std::array<Plane, 3> planes(const Image& image, const std::array<std::string, 3>
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 3) {
-        fmt::print(stderr, "usage: denoise_image IMAGE.exr DENOISED.exr\n");
+    const std::map<std::string, FeatureCleaning> cleanings{{"thorough", FeatureCleaning::thorough},
+                                                           {"draft", FeatureCleaning::draft},
+                                                           {"none", FeatureCleaning::none}};
+    const std::string how = argc > 3 ? argv[3] : "thorough", of_image = argc > 4 ? argv[4] : "";
+    if (argc < 3 || argc > 5 || !cleanings.contains(how) || (argc == 5 && of_image != "draft")) {
+        fmt::print(stderr,
+                   "usage: denoise_image IMAGE.exr DENOISED.exr [thorough|draft|none [draft]]\n");
         return 2;
     }
     try {
@@ -50,9 +60,10 @@ int main(int argc, char** argv) {
             for (size_t k = 0; k < 3; ++k) names[k] = prefix + layer + "." + channels[k];
             return planes(image, names);
         };
-        const NoisyFeatures features{named("albedo", "RGB"), named("N", "XYZ")};
+        const NoisyFeatures features{named("albedo", "RGB"), named("N", "XYZ"), cleanings.at(how)};
         const auto start = std::chrono::steady_clock::now();
-        const ColorPlanes clean = denoiser->denoise(features, {{.color = color}})[0];
+        const ColorPlanes clean =
+            denoiser->denoise(features, {{.color = color, .draft = of_image == "draft"}})[0];
         const double seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         Image result;

@@ -18,9 +18,9 @@ std::optional<DenoiserQuality> affordable(double left, double sampling = kEndles
     return affordable_quality(kTimes, asked, left, sampling);
 }
 
-TEST(AffordableQuality, HighTakesNoLongerThanTheSamples) {
-    EXPECT_EQ(affordable(41), kHigh);
-    EXPECT_EQ(affordable(39), kFast);
+TEST(AffordableQuality, HighTakesThreeTenthsAtMost) {
+    EXPECT_EQ(affordable(67), kHigh);
+    EXPECT_EQ(affordable(66), kFast);
     EXPECT_EQ(affordable(7), kFast);
 }
 

@@ -49,8 +49,8 @@ class HybridRender {
     /// Reconstructs the image from the samples and makes its layers.
     void deliver() {
         if (!job_.delivers()) return;
-        if (denoiser_ && job_.options.seconds &&
-            !times_) {  // time ended before a round was planned
+        // Time may have ended before a round was planned, and with it the quality
+        if (denoiser_ && job_.options.seconds && !times_) {
             predict();
             reserve_time();
         }

@@ -22,10 +22,9 @@ ReconstructionTimes reconstruction_times(RenderJob& job, const Prediction& predi
                                          const TimedDenoiser* denoiser);
 
 /// Quality of the denoiser that `left` seconds allow: the one that was `asked` for or, without
-/// that, high quality where it takes no longer than the samples that are still to come, which take
-/// `sampling` seconds if they are not ended by the time. For half of its time samples would gain as
-/// much (docs/decisions/0147). None: the image without a denoiser, which is quicker than one that
-/// takes longer than `left`.
+/// that, high quality where it takes less than three tenths of them, or no more than what the
+/// samples leave that are still to come, which take `sampling` seconds if no time ends them. None:
+/// the image without a denoiser, which is quicker than one that takes longer than `left`.
 std::optional<DenoiserQuality> affordable_quality(const ReconstructionTimes& times,
                                                   std::optional<DenoiserQuality> asked, double left,
                                                   double sampling);
