@@ -55,6 +55,18 @@ if(COVTRACE_WARNINGS_AS_ERRORS)
     target_compile_options(covtrace_flags INTERFACE -Werror)
 endif()
 
+option(COVTRACE_PRECOMPILED_HEADERS "Read the headers of other libraries once per program, where many files include them" OFF)
+# covtrace_precompile(TARGET <header> …): besides the usual headers of the standard library those that are named. The
+# preset `dev` goes without, so that a file that forgets an include is found.
+function(covtrace_precompile target)
+    if(COVTRACE_PRECOMPILED_HEADERS)
+        target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map>
+                                  <memory> <optional> <random> <set> <sstream> <string> <variant> <vector> ${ARGN})
+        # Without the time in it, the same header makes the same file, which compiler caches ask for.
+        target_compile_options(${target} PRIVATE "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
+    endif()
+endfunction()
+
 # covtrace_library(NAME SOURCES a.cpp … [DEPENDS covtrace_core …] [PRIVATE_DEPENDS embree …])
 # One library per folder; DEPENDS are the arrows of docs/internals/architecture.md and nothing else.
 function(covtrace_library name)
@@ -66,13 +78,21 @@ function(covtrace_library name)
     target_compile_options(${name} PRIVATE -fno-semantic-interposition)
 endfunction()
 
-# covtrace_tests(NAME LABEL label SOURCES a.cpp … [DEPENDS …]): a GoogleTest program, one ctest per test case.
+# covtrace_tests(NAME LABEL label SOURCES a.cpp … [DEPENDS …] [UNOPTIMISED]): a GoogleTest program, one ctest per test case.
 function(covtrace_tests name)
-    cmake_parse_arguments(ARG "" "LABEL" "SOURCES;DEPENDS" ${ARGN})
+    cmake_parse_arguments(ARG "UNOPTIMISED" "LABEL" "SOURCES;DEPENDS" ${ARGN})
     find_package(GTest REQUIRED)
     include(GoogleTest)
     add_executable(${name} ${ARG_SOURCES})
     target_link_libraries(${name} PRIVATE covtrace_flags ${ARG_DEPENDS} GTest::gtest_main)
+    set(headers covtrace_test_headers)
+    if(ARG_UNOPTIMISED)
+        target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)
+        set(headers covtrace_unoptimised_test_headers)
+    endif()
+    if(COVTRACE_PRECOMPILED_HEADERS)
+        target_precompile_headers(${name} REUSE_FROM ${headers})
+    endif()
     # A fixed seed for rapidcheck: a failure is found again by running the test again.
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${COVTRACE_TEST_SECONDS}
                          ENVIRONMENT RC_PARAMS=seed=20130531)
