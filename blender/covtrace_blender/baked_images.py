@@ -21,7 +21,7 @@ class BakedImages:
         values that it hangs on."""
         tree = socket.id_data
         is_changing = any(_may_change(node.image) for node in all_nodes(tree) if getattr(node, "image", None))
-        nodes = (signature(tree), socket.node.name, socket.identifier, how, baking.SMALLEST, baking.LARGEST)
+        nodes = (signature(tree), socket.node.path, socket.identifier, how, baking.SMALLEST, baking.LARGEST)
         kinds = self._kinds.get(nodes, _kinds.get(nodes))
         found = None
         if not surface.body or kinds is not None:

@@ -44,7 +44,7 @@ class _Counter:
         return sum(found.image is not None for found in self._known.values())
 
     def of(self, socket, surface, how, bake):
-        return self._once((socket.node.name, socket.identifier, how), bake)
+        return self._once((socket.node.path, socket.identifier, how), bake)
 
     def turned(self, image, body, uv_map, strength):
         self.kinds.update(body_normals.kinds(uv_map))

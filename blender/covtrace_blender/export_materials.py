@@ -13,8 +13,9 @@ from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
 from .node_signature import all_nodes
-from .shader_nodes.unsupported import NeedsBody, Unsupported
+from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS, groups_of_rays
+from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .sums import SumExporter
 
 TRANSPARENT = '"float alpha" 0'
@@ -109,7 +110,7 @@ class MaterialExporter(SumExporter):
         """(pbrt name, Emission or None, alpha parameter text, names of the UV maps, medium, Tangent or None), to rays of the baker's
         kind."""
         self.uv_maps, self.tangent = [], None
-        output = material.node_tree.get_output_node("CYCLES")
+        output = flat_output(material.node_tree)
         if output and output.inputs["Displacement"].is_linked:
             self.warn(f"material '{self.name}': Displacement is not supported and left out")
         node, _ = self._linked(output.inputs["Surface"]) if output else (None, None)

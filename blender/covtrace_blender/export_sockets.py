@@ -52,20 +52,16 @@ WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black"}
 
 
 class SocketReader:
-    """Reads sockets of the material `name` on `surface`; what is left out is told to `warn`, `uv_maps` collects the names
+    """Reads FlatSockets of the material `name` on `surface`; what is left out is told to `warn`, `uv_maps` collects the names
     of the UV maps that images want ("": the mesh's), and `hangs_on_object` is whether the object counts that it is on.
     `baker`: a Baker, `baked`: BakedImages."""
 
     surface = Surface()
 
     def _linked(self, socket):
-        """The node and socket that feed it, reroutes passed."""
-        while socket.is_linked:
-            link = socket.links[0]
-            if link.from_node.type != "REROUTE":
-                return link.from_node, link.from_socket
-            socket = link.from_node.inputs[0]
-        return None, None
+        """The node and socket that feed it."""
+        link = next(iter(socket.links), None)
+        return (link.from_node, link.from_socket) if link else (None, None)
 
     def _value(self, socket, grey=False, only_unit_square=False):
         """Value of a socket; what is not understood becomes the socket's own constant, with a warning.

@@ -5,6 +5,7 @@ import functools
 import numpy as np
 
 from .export_shaders import numbers
+from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS
 from .shader_nodes.unsupported import Unsupported
 from .solid import Solid
@@ -56,7 +57,7 @@ def coefficients(node, colour_of, number_of, tell):
 
 def has_volume(material):
     """Whether a material has a volume, supported or not."""
-    output = material.node_tree.get_output_node("CYCLES") if material and material.use_nodes and material.node_tree else None
+    output = flat_output(material.node_tree) if material and material.use_nodes and material.node_tree else None
     return output is not None and output.inputs["Volume"].is_linked
 
 

@@ -12,6 +12,7 @@ from .export_textures import pixels, write_pfm
 from .node_signature import all_nodes
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.flat import flat_socket
 from .shader_nodes.light_path import RAYS, groups_of_rays
 from .shader_nodes.place import UvPlace
 from .shader_nodes.unsupported import Unsupported
@@ -108,7 +109,7 @@ def _constant(socket, ray):
         raise Unsupported(socket.node, f"the image '{image.name}' is not the same everywhere")
     place = UvPlace(np.zeros((1, 2), np.float32), pixels_of, ray)
     try:
-        value = np.asarray(Evaluator(place).number(socket))
+        value = np.asarray(Evaluator(place).number(flat_socket(socket)))
     except Unsupported:
         return None
     return None if place.uv_maps else float(value.ravel()[0])

@@ -317,3 +317,68 @@ class MaterialsTest(BlenderTest):
                      "Displacement is not", "volume is not", "linked to 'Strength' of its shader",
                      "moves while the shutter is open"):
             self.assertTrue(any(text in w for w in self.warnings), f"{text}: {self.warnings}")
+
+
+def plastic_group():
+    """A group with the inputs Colour and Grey, whose output is a Principled that has the colour darkened by an inner group."""
+    inner = bpy.data.node_groups.new("darker", "ShaderNodeTree")
+    outer = bpy.data.node_groups.new("plastic", "ShaderNodeTree")
+    for tree, sockets in ((inner, (("Colour", "INPUT", "Color"), ("Colour", "OUTPUT", "Color"))),
+                          (outer, (("Colour", "INPUT", "Color"), ("Grey", "INPUT", "Float"), ("Surface", "OUTPUT", "Shader")))):
+        for name, side, kind in sockets:
+            if hasattr(tree, "interface"):
+                tree.interface.new_socket(name, in_out=side, socket_type=f"NodeSocket{kind}")
+            else:
+                (tree.inputs if side == "INPUT" else tree.outputs).new(f"NodeSocket{kind}", name)
+    ends = {tree: (tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")) for tree in (inner, outer)}
+    gamma = inner.nodes.new("ShaderNodeGamma")
+    gamma.inputs["Gamma"].default_value = 2
+    inner.links.new(ends[inner][0].outputs["Colour"], gamma.inputs["Color"])
+    inner.links.new(gamma.outputs[0], ends[inner][1].inputs["Colour"])
+    darker, principled = outer.nodes.new("ShaderNodeGroup"), outer.nodes.new("ShaderNodeBsdfPrincipled")
+    darker.node_tree = inner
+    outer.links.new(ends[outer][0].outputs["Colour"], darker.inputs["Colour"])
+    outer.links.new(darker.outputs[0], principled.inputs["Base Color"])
+    # A number where a colour is wanted
+    outer.links.new(ends[outer][0].outputs["Grey"], principled.inputs["Emission Color" if IS_NEW else "Emission"])
+    principled.inputs["Emission Strength"].default_value = 0.5
+    outer.links.new(principled.outputs[0], ends[outer][1].inputs["Surface"])
+    return outer
+
+
+class GroupsTest(BlenderTest):
+    def test_shaders_in_groups_are_as_in_cycles(self):
+        """Groups in a Mix Shader, each with its own values of what it does not get by links, and a muted node."""
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        m, group = bpy.data.materials.new("grouped"), plastic_group()
+        m.use_nodes = True
+        tree = m.node_tree
+        mix, output = tree.nodes.new("ShaderNodeMixShader"), tree.nodes["Material Output"]
+        mix.inputs[0].default_value = 0.25
+        for place, colour, grey in ((1, (0.9, 0.4, 0.2, 1), 0.1), (2, (0.1, 0.3, 0.8, 1), 0.3)):
+            node = tree.nodes.new("ShaderNodeGroup")
+            node.node_tree = group
+            node.inputs["Colour"].default_value, node.inputs["Grey"].default_value = colour, grey
+            tree.links.new(node.outputs[0], mix.inputs[place])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        muted = tree.nodes.new("ShaderNodeInvert")
+        tree.links.new(muted.outputs[0], tree.nodes["Group"].inputs["Colour"])
+        colour = tree.nodes.new("ShaderNodeRGB")
+        colour.outputs[0].default_value, muted.mute = (0.6, 0.4, 0.2, 1), True
+        tree.links.new(colour.outputs[0], muted.inputs["Color"])
+        self.plane(m)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        self.assert_as_cycles(0.02)
+
+    def test_muted_shaders_pass_on_their_first_one(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        m = material(Base_Color=(0.8, 0.3, 0.2, 1), Roughness=1.0)
+        tree = m.node_tree
+        mix = tree.nodes.new("ShaderNodeMixShader")
+        tree.links.new(tree.nodes["Principled BSDF"].outputs[0], mix.inputs[1])
+        tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        mix.mute = True
+        self.plane(m)
+        self.assert_as_cycles(0.02)

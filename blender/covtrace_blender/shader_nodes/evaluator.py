@@ -52,11 +52,10 @@ class Inputs:
 
 
 class Evaluator:
-    """Evaluates sockets at the places of `place`."""
+    """Evaluates FlatSockets at the places of `place`."""
 
     def __init__(self, place):
         self.place = place
-        self._groups = []  # the groups that the walk is inside of
         self._known = {}
 
     def number(self, socket):
@@ -83,54 +82,14 @@ class Evaluator:
 
     def output(self, node, output):
         """(value, type of its socket)."""
-        key = (tuple(id(group) for group in self._groups), node.name, output.identifier)
+        key = (node.path, output.identifier)
         if key not in self._known:
             self._known[key] = self._evaluate(node, output)
         return self._known[key]
 
     def _evaluate(self, node, output):
-        if getattr(node, "mute", False):
-            return self._muted(node, output)
-        if node.type == "REROUTE":
-            link = node.inputs[0].links[0] if node.inputs[0].is_linked else None
-            if link is None:
-                raise Unsupported(node, "nothing is linked to it")
-            return self.output(link.from_node, link.from_socket)
-        if node.type == "GROUP":
-            return self._group(node, output)
-        if node.type == "GROUP_INPUT":
-            return self._group_input(output)
         if node.type not in NODES:
             raise Unsupported(node, "nodes of its kind have no counterpart")
         with np.errstate(all="ignore"):
             value = np.asarray(NODES[node.type](node, output, Inputs(self, node)), np.float32)
         return np.nan_to_num(value), output.type
-
-    def _typed(self, socket):
-        """(value, type) of an input as it is."""
-        is_vector = socket.type in ("RGBA", "VECTOR")
-        return (self.vector if is_vector else self.number)(socket), socket.type
-
-    def _muted(self, node, output):
-        for link in node.internal_links:
-            if link.to_socket == output:
-                return self._typed(link.from_socket)
-        raise Unsupported(node, "it is muted and passes nothing on")
-
-    def _group(self, node, output):
-        ends = [n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output]
-        inside = [s for end in ends for s in end.inputs if s.identifier == output.identifier]
-        if not inside:
-            raise Unsupported(node, "the group has no output")
-        self._groups.append(node)
-        try:
-            return self._typed(inside[0])
-        finally:
-            self._groups.pop()
-
-    def _group_input(self, output):
-        group = self._groups.pop()
-        try:
-            return self._typed(next(s for s in group.inputs if s.identifier == output.identifier))
-        finally:
-            self._groups.append(group)
