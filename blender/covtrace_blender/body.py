@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import export_meshes
+from . import attributes, export_meshes
 from .atlases import digest
 from .charts import face_normals
 
@@ -37,7 +37,8 @@ class Body:
     """The triangles of a mesh that one material is on, with an Atlas of them.
 
     chosen: (n,) bool, which of the mesh's triangles these are. matrix: 4x4 from the mesh to the world; None where there
-    is none that is the only one. rest: (n, 3, 3) corners of the triangles before all deformation.
+    is none that is the only one. attribute_names: those that nodes ask for. rest: (n, 3, 3) corners of the triangles before all
+    deformation.
     """
 
     @staticmethod
@@ -45,7 +46,7 @@ class Body:
         """Whether a mesh has faces, all of whose vertices are somewhere."""
         return len(mesh.polygons) > 0 and bool(np.isfinite(export_meshes.positions(mesh)).all() and np.isfinite(undeformed(mesh)).all())
 
-    def __init__(self, mesh, chosen, matrix=None):
+    def __init__(self, mesh, chosen, matrix=None, attribute_names=()):
         mesh.calc_loop_triangles()
         vertices, loops = export_meshes.triangles(mesh), export_meshes.triangle_loops(mesh)
         positions, rest = export_meshes.positions(mesh), undeformed(mesh)
@@ -62,6 +63,7 @@ class Body:
             self._corners["UV", layer.name] = uvs
             if layer.active_render:
                 self._corners["UV", ""] = uvs
+        self._corners.update(attributes.corners(mesh, attribute_names, chosen))
         if matrix is not None and abs(np.linalg.det(matrix[:3, :3])) > LEAST_EXTENT:
             turn = np.linalg.inv(matrix[:3, :3]).T
             self._corners["WORLD"] = self._corners["OBJECT"] @ matrix[:3, :3].T + matrix[:3, 3]
@@ -94,7 +96,7 @@ class Body:
     def values(self, kind, texels, shift):
         """(n, 3) of what `kind` names, at the atlas' texels."""
         found = self.atlas.interpolated(self._corners[kind], texels, shift)
-        if "NORMAL" in kind:
+        if isinstance(kind, str) and "NORMAL" in kind:
             found /= np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-30)
         return found
 

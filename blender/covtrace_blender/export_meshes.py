@@ -61,11 +61,16 @@ def triangles_of(mesh, materials, material):
     return np.isin(np.minimum(triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
 
 
+def triangle_polygons(mesh):
+    """(n,) faces."""
+    return _triangles(mesh, "polygon_index", 1)
+
+
 def smooth_triangles(mesh):
     """(n,) whether the face of each has smooth shading."""
     smooth_polygons = np.empty(len(mesh.polygons), dtype=bool)
     mesh.polygons.foreach_get("use_smooth", smooth_polygons)
-    return smooth_polygons[_triangles(mesh, "polygon_index", 1)]
+    return smooth_polygons[triangle_polygons(mesh)]
 
 
 def loop_normals(mesh):

@@ -1,5 +1,6 @@
 """Nodes that hang on the place on a body, against Cycles: each body has a cell of the picture to itself."""
 
+import math
 import re
 import struct
 import unittest.mock
@@ -117,6 +118,41 @@ class BodiesTest(BlenderTest):
         noise = tree.node("TexNoise", {}, {"Scale": 5.0, "Detail": 0.0})
         tree.link(tree.node("Bump", {}, {"Distance": 0.03, "Height": (noise, "Fac")}), 0, tree.shader.inputs["Normal"])
         return tree.material
+
+    def attribute(self, obj, kind, domain, values, name="painted"):
+        """Gives an object's mesh an attribute; values(number of an element, count) gives its values."""
+        found = obj.data.attributes.new(name, kind, domain)
+        for number, element in enumerate(found.data):
+            value = values(number, len(found.data))
+            if "COLOR" in kind:
+                element.color = value
+            elif kind == "FLOAT_VECTOR":
+                element.vector = value
+            else:
+                element.value = value
+
+    def test_attributes_are_as_in_cycles(self):
+        def colour(number, count):
+            share = number / count
+            return share, 0.5 + 0.5 * math.cos(9 * share), 1 - share, share * share
+
+        names = []
+        for kind, domain, output, values in (
+                ("FLOAT_COLOR", "POINT", "Color", colour), ("BYTE_COLOR", "CORNER", "Color", colour),
+                ("FLOAT_COLOR", "POINT", "Fac", colour), ("BYTE_COLOR", "CORNER", "Alpha", colour),
+                ("FLOAT", "POINT", "Fac", lambda i, n: i / n), ("FLOAT_VECTOR", "FACE", "Vector", lambda i, n: colour(i, n)[:3]),
+                ("BOOLEAN", "FACE", "Fac", lambda i, n: i % 3 == 0), ("INT", "POINT", "Color", lambda i, n: i % 2)):
+            tree, is_colour = Tree(f"{kind} {domain} {output}"), "COLOR" in kind
+            node = tree.node("VertexColor" if is_colour and output != "Fac" else "Attribute")
+            if node.type == "ATTRIBUTE":
+                node.attribute_name = "painted"
+            tree.show(node, output)
+            obj = self.place(self.sphere(), tree.material, is_smooth=True)
+            self.attribute(obj, kind, domain, values)
+            if is_colour:
+                obj.data.color_attributes.render_color_index = 0
+            names.append(tree.material.name)
+        self.assert_bodies(names)
 
     def test_heights_on_bodies_are_as_in_cycles(self):
         self.light_from_the_side()

@@ -57,5 +57,19 @@ def _mapping(node, output, inputs):
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
 
 
+def attribute_of(node):
+    """What a node Attribute or Color Attribute calls its attribute; "" is the colour that is active for rendering."""
+    return node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
+
+
+def _attribute(node, output, inputs):
+    if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY":
+        raise Unsupported(node, f"attributes of its type {node.attribute_type.lower()} have no counterpart")
+    found = inputs.place.attribute(node, attribute_of(node), "ALPHA" if output.name == "Alpha" else "ATTRIBUTE")
+    # The number of a colour is its mean, and no luminance, as in Cycles.
+    return found.mean(axis=-1) if output.name in ("Fac", "Alpha") else found
+
+
 NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping,
+         "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

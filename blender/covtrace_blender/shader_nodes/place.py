@@ -43,6 +43,10 @@ class UvPlace(_Place):
         """(n, 3): "OBJECT" or "GENERATED" coordinates, the "NORMAL" in the object's space; "WORLD" and "WORLD NORMAL"."""
         raise NeedsBody(node, f"{kind.lower()} coordinates do not follow from a UV map")
 
+    def attribute(self, node, name, part):
+        """(n, 3) of the mesh's attribute of this name: what it is ("ATTRIBUTE") or three times its "ALPHA"."""
+        raise NeedsBody(node, "attributes do not follow from a UV map")
+
 
 class BodyPlace(_Place):
     """Texels of the atlas of `body`, which has `knows(kind)` and `values(kind, texels, shift)`; shift: by the share of a texel."""
@@ -60,9 +64,14 @@ class BodyPlace(_Place):
         return list(self._known)
 
     def uv_of(self, node, name):
-        kind = ("UV", name)
+        return self._values_or_zero(("UV", name))
+
+    def attribute(self, node, name, part):
+        return self._values_or_zero((part, name))
+
+    def _values_or_zero(self, kind):
         if not self._body.knows(kind):
-            # As in Cycles: a map that a mesh has not is zero everywhere.
+            # As in Cycles: a map or an attribute that a mesh has not is zero everywhere.
             self._known[kind] = np.zeros((len(self._texels), 3), np.float32)
         return self._values(kind)
 
