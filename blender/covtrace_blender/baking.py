@@ -46,10 +46,11 @@ class Surface:
 
 
 class Baker:
-    """Bakes what functions of an Evaluator give, to rays of the kind `ray`. `pixels_of`, `ray`: as UvPlace has them."""
+    """Bakes what functions of an Evaluator give, to rays of the kind `ray`, on what `owner` is. `pixels_of`, `ray`, `owner`: as UvPlace
+    has them."""
 
     def __init__(self, pixels_of):
-        self.pixels_of, self.ray = pixels_of, None
+        self.pixels_of, self.ray, self.owner = pixels_of, None, None
 
     def bake(self, get, surface, only_unit_square=False):
         """Bakes `get(evaluator)`, a number or a vector; only_unit_square: for what has no other layout.
@@ -57,13 +58,13 @@ class Baker:
         Raises Unsupported of the node that cannot be evaluated.
         """
         if surface.body:
-            return bake_body(get, surface.body, self.pixels_of, self.ray)
+            return bake_body(get, surface.body, self.pixels_of, self.ray, self.owner)
 
         def at(uv):
-            return get(Evaluator(UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray)))
+            return get(Evaluator(UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray, self.owner)))
 
         random = np.random.default_rng(0)
-        place = UvPlace(random.random((PROBES, 2)).astype(np.float32), self.pixels_of, self.ray)
+        place = UvPlace(random.random((PROBES, 2)).astype(np.float32), self.pixels_of, self.ray, self.owner)
         value = get(Evaluator(place))
         if place.is_uniform:
             return Baked(constant=value)

@@ -11,10 +11,10 @@ from .shader_nodes.place import BodyPlace
 PROBES = 256
 
 
-def bake_body(get, body, pixels_of, ray):
+def bake_body(get, body, pixels_of, ray, owner):
     """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`. The rest as BodyPlace has it."""
     def at(texels, shift=(0.0, 0.0)):
-        place = BodyPlace(body, texels, shift, pixels_of, ray)
+        place = BodyPlace(body, texels, shift, pixels_of, ray, owner)
         found = get(Evaluator(place))
         kinds.update(place.kinds())
         return found

@@ -38,7 +38,7 @@ class _Counter:
     that these hang on."""
 
     def __init__(self, pixels_of):
-        self._pixels_of, self.ray, self._known, self.kinds = pixels_of, None, {}, set()
+        self._pixels_of, self.ray, self.owner, self._known, self.kinds = pixels_of, None, None, {}, set()
 
     def images(self):
         return sum(found.image is not None for found in self._known.values())
@@ -51,8 +51,8 @@ class _Counter:
         return self._once((image.name_full, uv_map, strength), self._image).image
 
     def bake(self, get, surface, only_unit_square=False):
-        place = BodyPlace(_AnyBody, np.arange(PROBES), (0.0, 0.0), self._pixels_of, self.ray) if surface.body else \
-            UvPlace(np.random.default_rng(0).random((PROBES, 2), np.float32), self._pixels_of, self.ray)
+        place = BodyPlace(_AnyBody, np.arange(PROBES), (0.0, 0.0), self._pixels_of, self.ray, self.owner) if surface.body else \
+            UvPlace(np.random.default_rng(0).random((PROBES, 2), np.float32), self._pixels_of, self.ray, self.owner)
         value = get(Evaluator(place))
         if place.is_uniform:
             return Baked(constant=value)

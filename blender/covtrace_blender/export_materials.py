@@ -13,6 +13,7 @@ from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
 from .node_signature import all_nodes
+from .owner import Owner, asks_for_owner
 from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS, groups_of_rays
 from .shader_nodes.unsupported import NeedsBody, Unsupported
@@ -42,17 +43,18 @@ class MaterialExporter(SumExporter):
         self.files, self.media = TextureFiles(folder, warn), Media(out)
         self.baker, self.baked = Baker(self.files.source), BakedImages()
         self.known, self.of_objects, self.interfaces = {}, set(), set()
-        self.count = 0
+        self.count, self.owner = 0, Owner()
 
-    def variants(self, material, place=None, surface_of=lambda material_name: Surface()):
+    def variants(self, material, place=None, surface_of=lambda material_name: Surface(), owner=Owner()):
         """The Variants of a material: one, unless Light Path nodes show it to rays of different kinds as different ones. No
         ray has two of them; one that has none passes.
 
-        place: what it is on, for what hangs on it. surface_of(name of the material): its Surface there.
+        place: what it is on, for what hangs on it. surface_of(name of the material): its Surface there; owner: its Owner.
         """
         name = material.name_full if material else None
         key = (name, place if name in self.of_objects else None)
         if key not in self.known:
+            self.owner = owner
             exported = self._on(surface_of(name), material)
             if self.hangs_on_object:
                 self.of_objects.add(name)
@@ -87,6 +89,9 @@ class MaterialExporter(SumExporter):
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
         nodes = list(all_nodes(material.node_tree))
+        self.baker.owner = None
+        if asks_for_owner(nodes):
+            self.baker.owner, self.hangs_on_object = self.owner, True
         if not any(node.type == "LIGHT_PATH" for node in nodes):
             return [Variant(RAYS, *self._export(material))]
         found = []

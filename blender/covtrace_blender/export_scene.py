@@ -17,6 +17,7 @@ from .export_materials import MaterialExporter
 from .export_shaders import numbers
 from .export_volumes import Volumes, has_volume
 from .node_signature import hangs_on_world
+from .owner import Owner, asks_for_random, random_of
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
 from .shader_nodes.light_path import RAYS
@@ -80,6 +81,7 @@ class SceneExporter:
         self.out = out
         out.write('WorldBegin\nMediumInterface "" ""\n')
         self.materials, self.atlases, self.bodies = MaterialExporter(out, self.folder, self.warn), Atlases(), {}
+        self.random_materials, self.random = {}, None
         self.lamp_images = PhotometricImages(self.folder)
         self._write_world()
         self._look_at_instances()
@@ -142,6 +144,7 @@ class SceneExporter:
             hidden = self.visibility.hidden(instance) if slots else None
             if hidden is None:
                 continue
+            self.random = self._random_of(instance) if slots else None
             for slot in slots:
                 filled = [v for v in self._variants(obj, slot, obj.data) if v.medium and set(v.rays) - hidden]
                 if filled:
@@ -163,7 +166,8 @@ class SceneExporter:
                 self._write_lamp(obj, matrix, end, hidden)
             elif obj.type in SURFACES or obj.type == "CURVES":
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
-                shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles)
+                self.random = self._random_of(instance)
+                shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles, self.random)
                 if abs(matrix.determinant()) < 1e-30:
                     continue
                 if shown not in exported:
@@ -266,6 +270,15 @@ class SceneExporter:
             return [self.layer.material_override] * max(1, len(obj.material_slots))
         return [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
 
+    def _random_of(self, instance):
+        """The random number that the materials of an instance ask for; None where none does."""
+        materials = self._materials(instance.object)
+        for material in materials:
+            if material and material.name_full not in self.random_materials:
+                self.random_materials[material.name_full] = asks_for_random(material)
+        is_asked = any(material and self.random_materials[material.name_full] for material in materials)
+        return random_of(instance) if is_asked else None
+
     @staticmethod
     def _uv_maps(variants):
         """The names of the UV maps that they read."""
@@ -286,7 +299,8 @@ class SceneExporter:
             has_body = mesh and Body.is_of(mesh)
             return Surface(self.uv_ranges.of(name), body if has_body else None, export_meshes.active_uv_map(mesh) if has_body else None)
 
-        return self.materials.variants(material, (*Placements.key(obj), mesh is None), surface_of)
+        owner = Owner(obj, material, self.random, self.placements.only_matrix(obj))
+        return self.materials.variants(material, (*Placements.key(obj), mesh is None, self.random), surface_of, owner)
 
     def _body(self, obj, mesh, material):
         """The Body of what has a material on an object, of all of it where nothing has; made once, without its atlas."""

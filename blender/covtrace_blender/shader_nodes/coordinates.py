@@ -70,6 +70,14 @@ def _attribute(node, output, inputs):
     return found.mean(axis=-1) if output.name in ("Fac", "Alpha") else found
 
 
+def _object_info(node, output, inputs):
+    owner = inputs.place.owner
+    found = owner.value(output.name) if owner else None
+    if found is None:
+        raise Unsupported(node, f"the {output.name.lower()} of what has instances is not known" if owner else "it is on no object")
+    return found
+
+
 NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping,
-         "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute,
+         "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

@@ -1,7 +1,7 @@
 """The places of a surface at which nodes are evaluated, and what nodes ask of them.
 
 Each has `ray`: the kind of ray that sees them, one of light_path.RAYS, None where that is not known; `images`: those that nodes
-have asked for; `is_uniform`: whether they have asked for nothing that changes from place to place.
+have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from place to place.
 """
 
 import numpy as np
@@ -10,8 +10,8 @@ from .unsupported import NeedsBody, Unsupported
 
 
 class _Place:
-    def __init__(self, pixels_of, ray):
-        self._pixels_of, self.ray, self.images = pixels_of, ray, []
+    def __init__(self, pixels_of, ray, owner):
+        self._pixels_of, self.ray, self.owner, self.images = pixels_of, ray, owner, []
 
     def pixels(self, image):
         """(h, w, 4) linear, from the top."""
@@ -23,8 +23,8 @@ class _Place:
 class UvPlace(_Place):
     """n places of a UV map. uv: (n, 2). uv_maps: the names by which nodes have asked for it."""
 
-    def __init__(self, uv, pixels_of, ray=None):
-        super().__init__(pixels_of, ray)
+    def __init__(self, uv, pixels_of, ray=None, owner=None):
+        super().__init__(pixels_of, ray, owner)
         self.uv, self.uv_maps = uv, []
 
     @property
@@ -51,8 +51,8 @@ class UvPlace(_Place):
 class BodyPlace(_Place):
     """Texels of the atlas of `body`, which has `knows(kind)` and `values(kind, texels, shift)`; shift: by the share of a texel."""
 
-    def __init__(self, body, texels, shift, pixels_of, ray=None):
-        super().__init__(pixels_of, ray)
+    def __init__(self, body, texels, shift, pixels_of, ray=None, owner=None):
+        super().__init__(pixels_of, ray, owner)
         self._body, self._texels, self._shift, self._known = body, texels, shift, {}
 
     @property

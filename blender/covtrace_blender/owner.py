@@ -1,0 +1,53 @@
+"""The object that a material is on, as the node Object Info knows it."""
+
+import functools
+
+import numpy as np
+
+from .node_signature import all_nodes
+from .shader_nodes.hashing import hashed
+
+# Values of Random that are told apart: each makes a material of its own and, of instances, a mesh of its own.
+LEVELS, LEVELS_OF_INSTANCES = 256, 8
+RANGE = 1 << 32  # of Blender's random numbers
+
+
+class Owner:
+    """What Object Info tells of an evaluated object and the material on it. random: in [0, 1]; matrix: 4x4 from the object to the
+    world, None where there is none that is the only one."""
+
+    def __init__(self, obj=None, material=None, random=0.5, matrix=None):
+        self._values = {"Random": random, "Color": (1.0, 1.0, 1.0), "Alpha": 1.0, "Object Index": 0.0, "Material Index": 0.0}
+        if obj is not None:
+            self._values.update({"Color": tuple(obj.color)[:3], "Alpha": obj.color[3], "Object Index": float(obj.pass_index),
+                                 "Material Index": float(material.pass_index) if material else 0.0})
+        if matrix is not None:
+            self._values["Location"] = tuple(float(v) for v in matrix[:3, 3])
+
+    def key(self):
+        """Equal for owners of which Object Info tells the same."""
+        return tuple(sorted(self._values.items()))
+
+    def value(self, name):
+        """() or (3,); None for what is not known."""
+        return None if name not in self._values else np.asarray(self._values[name], np.float32)
+
+
+def asks_for_owner(nodes):
+    return any(node.type == "OBJECT_INFO" for node in nodes)
+
+
+def asks_for_random(material):
+    """Whether a material's nodes ask for the random number of what it is on."""
+    tree = material.node_tree if material and material.use_nodes else None
+    return tree is not None and any(node.type == "OBJECT_INFO" and node.outputs["Random"].is_linked for node in all_nodes(tree))
+
+
+def random_of(instance):
+    """The random number of an instance, or of an object by its name as Cycles has it, in the middle of its level."""
+    if instance.is_instance:
+        random_id, levels = instance.random_id % RANGE, LEVELS_OF_INSTANCES
+    else:
+        of_name = functools.reduce(lambda number, byte: (number * 37 + byte) % RANGE, instance.object.name.encode(), 0)
+        random_id, levels = int(hashed(np.uint32(of_name), np.uint32(0))), LEVELS
+    return (random_id * levels // RANGE + 0.5) / levels

@@ -1,0 +1,84 @@
+"""The node Object Info against Cycles: each object fills a cell of the picture."""
+
+import bpy
+import numpy as np
+from addon_support import BlenderTest, render
+from covtrace_blender import owner
+from node_trees import Tree
+
+CELL = 8  # pixels
+COLUMNS = 4
+
+
+class ObjectInfoTest(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.camera.data.type, self.scene.covtrace.method = "ORTHO", "uniform"
+
+    def shining(self, *outputs):
+        """A material that shines in as many outputs of Object Info as red, green and blue."""
+        tree = Tree("told")
+        node, shader = tree.node("ObjectInfo"), tree.node("Emission")
+        if outputs[0] in ("Color", "Location"):
+            tree.link(node, outputs[0], shader.inputs["Color"])
+        else:
+            colour = tree.node("CombineXYZ")
+            for output, channel in zip(outputs, "XYZ"):
+                tree.link(node, output, colour.inputs[channel])
+            tree.link(colour, 0, shader.inputs["Color"])
+        tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+        tree.material.pass_index = 3
+        return tree.material
+
+    def plane(self, m, count=0):
+        bpy.ops.mesh.primitive_plane_add(size=1, location=(count % COLUMNS, count // COLUMNS, 0))
+        bpy.context.object.data.materials.append(m)
+        return bpy.context.object
+
+    def cells(self, rows):
+        """(rows, COLUMNS, 3) from the bottom: what both engines show of each cell."""
+        self.scene.render.resolution_x, self.scene.render.resolution_y = CELL * COLUMNS, CELL * rows
+        self.camera.location, self.camera.data.ortho_scale = ((COLUMNS - 1) / 2, (rows - 1) / 2, 5), max(COLUMNS, rows)
+        found = []
+        for engine in ("COVTRACE", "CYCLES"):
+            image = render(engine, 4)
+            channels = [np.reshape(image[f"Combined.{c}"], (rows, CELL, COLUMNS, CELL)) for c in "RGB"]
+            found.append(np.stack([c[:, 2:-2, :, 2:-2].mean(axis=(1, 3)) for c in channels], axis=-1)[::-1])
+        return found
+
+    def test_objects_know_themselves(self):
+        told = (("Color",), ("Location",), ("Random", "Object Index", "Material Index"))
+        told += (("Alpha",),) if bpy.app.version >= (3, 4) else ()
+        materials = [self.shining(*outputs) for outputs in told]
+        for number in range(2 * len(materials)):
+            thing = self.plane(materials[number % len(materials)], number)
+            thing.color, thing.pass_index = (0.1 + 0.1 * number, 0.9 - 0.1 * number, 0.4, 0.5), number
+        ours, theirs = self.cells(2)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        np.testing.assert_allclose(ours, theirs, atol=0.6 / owner.LEVELS, rtol=1e-3)
+
+    def test_instances_differ_at_random(self):
+        thing = self.plane(self.shining("Random", "Random", "Random"))
+        alone = bpy.data.collections.new("alone")
+        alone.objects.link(thing)
+        self.scene.collection.objects.unlink(thing)
+        for number in range(4 * COLUMNS):
+            empty = bpy.data.objects.new("empty", None)
+            empty.instance_type, empty.instance_collection = "COLLECTION", alone
+            empty.location = (number % COLUMNS, number // COLUMNS, 0)
+            self.scene.collection.objects.link(empty)
+        ours, theirs = self.cells(4)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        self.assertGreater(theirs.std(), 0.2)
+        np.testing.assert_allclose(ours, theirs, atol=0.51 / owner.LEVELS_OF_INSTANCES)
+
+    def test_the_place_of_instances_is_told(self):
+        thing = self.plane(self.shining("Location"))
+        thing.instance_type = "VERTS"
+        bpy.ops.mesh.primitive_plane_add(size=1)
+        bpy.context.object.parent = thing
+        bpy.context.object.data.materials.append(thing.data.materials[0])
+        self.export()
+        self.assertTrue(any("the location of what has instances" in w for w in self.warnings), self.warnings)
