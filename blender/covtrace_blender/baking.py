@@ -8,7 +8,7 @@ from . import edges
 from .baked import Baked, BakedImage, Layout
 from .body_baking import bake_body
 from .parts import PART, by_parts
-from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.evaluator import evaluated
 from .shader_nodes.place import UvPlace
 
 SMALLEST, LARGEST = 512, 2048  # pixels along a side
@@ -61,13 +61,13 @@ class Baker:
             return bake_body(get, surface.body, self.pixels_of, self.ray, self.owner)
 
         def at(uv):
-            return get(Evaluator(UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray, self.owner)))
+            return evaluated(get, UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray, self.owner))
 
         random = np.random.default_rng(0)
         place = UvPlace(random.random((PROBES, 2)).astype(np.float32), self.pixels_of, self.ray, self.owner)
-        value = get(Evaluator(place))
+        value = evaluated(get, place)
         if place.is_uniform:
-            return Baked(constant=value)
+            return Baked(constant=value, is_mean=place.hangs_on_angle)
         shape = value.shape if len(value.shape) and value.shape[0] == PROBES else (PROBES, *value.shape)
 
         def values_at(uv):
@@ -82,7 +82,8 @@ class Baker:
             layout = Layout((0, 0), (1, 1), "repeat")
         size = _size(values_at, layout, place.images, random)
         pixels = self._pixels(values_at, layout, size, len(shape) > 1)
-        return Baked(image=BakedImage(pixels), layout=layout, uv_maps=place.uv_maps, is_cut=is_cut)
+        return Baked(image=BakedImage(pixels), layout=layout, uv_maps=place.uv_maps, is_cut=is_cut,
+                     is_mean=place.hangs_on_angle)
 
     @staticmethod
     def _pixels(values_at, layout, size, is_colour):

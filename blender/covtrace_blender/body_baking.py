@@ -5,7 +5,7 @@ import numpy as np
 from . import edges
 from .baked import Baked, BakedImage, Layout
 from .parts import by_parts
-from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.evaluator import evaluated
 from .shader_nodes.place import BodyPlace
 
 PROBES = 256
@@ -15,16 +15,17 @@ def bake_body(get, body, pixels_of, ray, owner):
     """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`. The rest as BodyPlace has it."""
     def at(texels, shift=(0.0, 0.0)):
         place = BodyPlace(body, texels, shift, pixels_of, ray, owner)
-        found = get(Evaluator(place))
+        found = evaluated(get, place)
         kinds.update(place.kinds())
+        means.append(place.hangs_on_angle)
         return found
 
-    kinds = set()
+    kinds, means = set(), []
     texels = body.atlas.texels
     count = len(texels.triangle)
     probe = at(np.random.default_rng(0).integers(0, max(count, 1), PROBES if count else 0))
     if not kinds or not count or probe.shape in ((), (3,)):
-        return Baked(constant=probe if count else np.zeros(probe.shape[1:]), kinds=kinds)
+        return Baked(constant=probe if count else np.zeros(probe.shape[1:]), kinds=kinds, is_mean=any(means))
     channels = 3 if probe.ndim == 2 else 1
 
     def values_at(chosen, shift):
@@ -43,7 +44,7 @@ def bake_body(get, body, pixels_of, ray, owner):
     chart = scattered(body.atlas, body.atlas.chart[texels.triangle, None] + 1)[..., 0]
     crossed = np.flatnonzero(edges.edges(scattered(body.atlas, values), chart)[texels.rows, texels.columns])
     values[crossed] = mean_at(crossed, edges.places(len(crossed), count))
-    return Baked(image=body_image(body.atlas, values), layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds)
+    return Baked(image=body_image(body.atlas, values), layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds, is_mean=any(means))
 
 
 def scattered(atlas, values):

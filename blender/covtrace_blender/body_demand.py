@@ -11,7 +11,7 @@ from .baked import Baked, BakedImage, Layout
 from .baking import Surface
 from .charts import WAYS
 from .export_materials import MaterialExporter
-from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.evaluator import evaluated
 from .shader_nodes.place import BodyPlace, UvPlace
 from .shader_nodes.unsupported import NeedsBody
 
@@ -53,7 +53,7 @@ class _Counter:
     def bake(self, get, surface, only_unit_square=False):
         place = BodyPlace(_AnyBody, np.arange(PROBES), (0.0, 0.0), self._pixels_of, self.ray, self.owner) if surface.body else \
             UvPlace(np.random.default_rng(0).random((PROBES, 2), np.float32), self._pixels_of, self.ray, self.owner)
-        value = get(Evaluator(place))
+        value = evaluated(get, place)
         if place.is_uniform:
             return Baked(constant=value)
         if surface.body:

@@ -97,6 +97,9 @@ class SocketReader:
         baked = self.baked.of(socket, self.surface, (*how, self.baker.ray, self.baker.owner and self.baker.owner.key()), lambda: self.baker.bake(get, self.surface, only_unit_square))
         if baked.is_cut:
             self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")
+        if baked.is_mean:
+            self.warn(f"material '{self.name}': what feeds '{socket.name}' of '{socket.node.name}' hangs on the angle of sight; it is the mean "
+                      "over all angles")
         for name in baked.uv_maps:
             self._note_uv_map(name)
         if baked.image is None:

@@ -112,7 +112,7 @@ def _constant(socket, ray):
         value = np.asarray(Evaluator(place).number(flat_socket(socket)))
     except Unsupported:
         return None
-    return None if place.uv_maps else float(value.ravel()[0])
+    return None if place.uv_maps or place.hangs_on_angle else float(value.ravel()[0])
 
 
 def _visible(colour):

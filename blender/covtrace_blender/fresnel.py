@@ -17,8 +17,12 @@ def mean_reflectance(eta):
     return float(np.mean(2 * reflectance(cosine, eta) * cosine))
 
 
+def exponent_of_facing(blend):
+    """The exponent b of Layer Weight's Facing, 1 - cos^b; blend: a number or an array."""
+    blend = np.clip(blend, 0.0, 1 - 1e-5)
+    return np.where(blend < 0.5, 2 * blend, 0.5 / (1 - blend))
+
+
 def mean_facing(blend):
-    """Mean of Layer Weight's Facing: 1 - cos^b."""
-    blend = min(max(blend, 0.0), 1 - 1e-5)
-    exponent = 2 * blend if blend < 0.5 else 0.5 / (1 - blend)
-    return 1 - 2 / (exponent + 2)
+    """Its mean."""
+    return float(1 - 2 / (exponent_of_facing(blend) + 2))

@@ -3,12 +3,12 @@
 import numpy as np
 
 from ..working_space import luminance
-from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, musgrave, noise_nodes, patterns, ramps
+from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, musgrave, noise_nodes, patterns, ramps, sight
 from .unsupported import Unsupported
 
 # Values by the type of the node: function(node, output, Inputs) to a number or a vector, as the output's type is.
 NODES = {**adjustments.NODES, **blending.NODES, **colours.NODES, **coordinates.NODES, **gradients.NODES, **images.NODES,
-         **light_path.NODES, **maths.NODES, **musgrave.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES}
+         **light_path.NODES, **maths.NODES, **musgrave.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES, **sight.NODES}
 
 
 class Inputs:
@@ -93,3 +93,8 @@ class Evaluator:
         with np.errstate(all="ignore"):
             value = np.asarray(NODES[node.type](node, output, Inputs(self, node)), np.float32)
         return np.nan_to_num(value), output.type
+
+
+def evaluated(get, place):
+    """What a function of an Evaluator gives at places, the mean over the angles of sight where it hangs on those."""
+    return sight.mean_over_angles(lambda place: get(Evaluator(place)), place)

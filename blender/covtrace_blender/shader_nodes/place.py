@@ -1,17 +1,25 @@
 """The places of a surface at which nodes are evaluated, and what nodes ask of them.
 
 Each has `ray`: the kind of ray that sees them, one of light_path.RAYS, None where that is not known; `images`: those that nodes
-have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from place to place.
+have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from place to place; `sight`: the cosine of the angle of sight, and `hangs_on_angle`: whether nodes
+have asked for it.
 """
 
 import numpy as np
 
+from .sight import COSINES
 from .unsupported import NeedsBody, Unsupported
 
 
 class _Place:
     def __init__(self, pixels_of, ray, owner):
         self._pixels_of, self.ray, self.owner, self.images = pixels_of, ray, owner, []
+        self.sight, self.hangs_on_angle = COSINES[0], False
+
+    def cosine(self):
+        """That of the angle of sight."""
+        self.hangs_on_angle = True
+        return self.sight
 
     def pixels(self, image):
         """(h, w, 4) linear, from the top."""
