@@ -73,10 +73,25 @@ def smooth_triangles(mesh):
     return smooth_polygons[triangle_polygons(mesh)]
 
 
+def _has_sharp_edges(mesh):
+    sharp = mesh.attributes.get("sharp_edge")
+    if sharp is None:
+        return False
+    values = np.empty(len(sharp.data), bool)
+    sharp.data.foreach_get("value", values)
+    return bool(values.any())
+
+
 def loop_normals(mesh):
-    """(n, 3) of the corners of faces."""
+    """(n, 3) of the corners of faces, for smooth ones as Cycles has them."""
     if hasattr(mesh, "calc_normals_split"):  # from Blender 4.1 on they are there
         mesh.calc_normals_split()
+    elif not mesh.has_custom_normals and not _has_sharp_edges(mesh):
+        # Blender's own are cut where a smooth face meets a flat one, in Cycles all faces of a vertex have a part in its normal.
+        normals, vertices = np.empty(3 * len(mesh.vertices), np.float32), np.empty(len(mesh.loops), np.int32)
+        mesh.vertex_normals.foreach_get("vector", normals)
+        mesh.loops.foreach_get("vertex_index", vertices)
+        return normals.reshape(-1, 3)[vertices]
     normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
     mesh.loops.foreach_get("normal", normals)
     return normals.reshape(-1, 3)

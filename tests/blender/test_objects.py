@@ -87,6 +87,26 @@ class ObjectsTest(BlenderTest):
         self.assertEqual(self.export().count("ObjectInstance"), 16)
         self.assert_silhouettes_as_cycles()
 
+    def test_smooth_sides_of_flat_caps_are_as_in_cycles(self):
+        """Sides of a cylinder below a lamp: whether caps have a part in their normals tells whether these are lit."""
+        self.background.inputs["Color"].default_value = (0.2, 0.2, 0.2, 1)
+        self.lamp("SUN", energy=3).rotation_euler = (0.6, 0, 0)
+        self.camera.location, self.camera.rotation_euler, self.camera.data.lens = (0, -5, 0), (math.pi / 2, 0, 0), 130
+        m = self.black()
+        m.node_tree.nodes["Diffuse BSDF"].inputs["Color"].default_value = (0.8, 0.8, 0.8, 1)
+        for are_edges_sharp in (False, True):
+            bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=1, vertices=24)
+            cylinder = bpy.context.object
+            cylinder.data.materials.append(m)
+            for polygon in cylinder.data.polygons:
+                polygon.use_smooth = len(polygon.vertices) == 4
+            sharp = [e for e in cylinder.data.edges if cylinder.data.vertices[e.vertices[0]].co.z == cylinder.data.vertices[e.vertices[1]].co.z]
+            for edge in sharp:
+                edge.use_edge_sharp = are_edges_sharp
+            with self.subTest(are_edges_sharp=are_edges_sharp):
+                self.assert_as_cycles(0.02)
+            bpy.data.objects.remove(cylinder)
+
     def test_curves_and_text_are_meshes(self):
         bpy.ops.curve.primitive_bezier_circle_add(radius=1)
         bpy.context.object.data.bevel_depth = 0.15
