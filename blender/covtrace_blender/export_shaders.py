@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .export_sockets import SocketReader, Value
-from .shader_nodes.unsupported import Unsupported
+from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .tangents import Tangent
 
 
@@ -137,6 +137,8 @@ class ShaderWriter(SocketReader):
             strength = self._plain(source.inputs["Strength"])
             if source.uv_map and source.uv_map not in self.uv_maps:
                 self.uv_maps.append(source.uv_map)
+            if value.image and not self.surface.body and not value.is_plainly_placed():
+                self._ask_for_body(NeedsBody(source, "a normal map lies on the unit square alone"))
             if value.image and self.surface.body:
                 return self._normals_on_body(value.image, ("UV", source.uv_map), strength)
             if value.image:

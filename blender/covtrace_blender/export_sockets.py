@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from . import tiled_images
 from .baking import Surface
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .working_space import luminance
@@ -154,6 +155,8 @@ class SocketReader:
         return None
 
     def _image(self, node, output, grey, mapping):
+        squares = tiled_images.grid(node.image)
+        mapping = tuple(value / squares[k % 2] for k, value in enumerate(mapping))
         return Value(image=node.image, mapping=mapping, channel="A" if output.name == "Alpha" else "grey" if grey else None,
                      filter="point" if node.interpolation == "Closest" else "bilinear",
                      wrap=WRAPS.get(node.extension, "repeat"))

@@ -6,6 +6,7 @@ import zlib
 
 import numpy as np
 
+from . import tiled_images
 from .baked import BakedImage
 from .working_space import from_rec709
 
@@ -26,7 +27,14 @@ MISSING = (1, 0, 1, 1)  # linear; the magenta by which Blender shows images whos
 
 
 def pixels(image, warn):
-    """(height, width, 4) float32 from the top, colours linear where the image says that it is sRGB."""
+    """(height, width, 4) float32 from the top, of all its tiles; colours linear where the image says that it is sRGB."""
+    if image.source == "TILED":
+        return tiled_images.joined(image, lambda tile: _own_pixels(tile, warn), MISSING, warn)
+    return _own_pixels(image, warn)
+
+
+def _own_pixels(image, warn):
+    """The same of the first tile alone."""
     width, height = image.size
     if width == 0 or height == 0 or image.channels == 0:
         warn(f"the image '{image.name}' has no pixels (is its file '{image.filepath}' missing?); it is magenta, as in Cycles")

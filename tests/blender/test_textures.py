@@ -1,5 +1,7 @@
 """The places of images on surfaces, their wrapping and their light, against Cycles."""
 
+import os
+import tempfile
 import unittest.mock
 
 import bpy
@@ -136,6 +138,59 @@ class TexturesTest(BlenderTest):
         m.node_tree.links.new(gamma.outputs["Color"], emission.inputs["Color"])
         for a, b in zip(mean(render("COVTRACE", 4), 14, 10, 18, 14), (1, 0, 1)):
             self.assertAlmostEqual(a, b, delta=0.01)
+
+    def tiled_image(self, folder):
+        """An image of three tiles around the origin's corner, the second of which is finer, and the file of a fourth is missing."""
+        for number, colour, size in ((1001, (0.8, 0.1, 0.2, 1), 4), (1002, (0.1, 0.7, 0.3, 1), 8), (1011, (0.2, 0.3, 0.9, 1), 4)):
+            tile = bpy.data.images.new("tile", size, size)
+            tile.pixels = colour * (size * size)
+            tile.filepath_raw, tile.file_format = os.path.join(folder, f"skin.{number}.png"), "PNG"
+            tile.save()
+        image = bpy.data.images.load(os.path.join(folder, "skin.1001.png"))
+        image.source, image.filepath = "TILED", os.path.join(folder, "skin.<UDIM>.png")
+        for number in (1002, 1011, 1012):
+            if all(tile.number != number for tile in image.tiles):
+                image.tiles.new(number)
+        return image
+
+    def test_tiles_lie_as_in_cycles(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        m = self.image_material()
+        plane = self.plane(m, size=3)
+        for loop in plane.data.uv_layers[0].data:
+            loop.uv = (2 * loop.uv[0], 2 * loop.uv[1])
+        texture = next(node for node in m.node_tree.nodes if node.type == "TEX_IMAGE")
+        with tempfile.TemporaryDirectory() as folder:
+            texture.image = self.tiled_image(folder)
+            self.assert_quarters_as_cycles()
+            self.export()
+            self.assertEqual(len([w for w in self.warnings if "tile 1012" in w]), 1, self.warnings)
+            gamma = m.node_tree.nodes.new("ShaderNodeGamma")
+            gamma.inputs["Gamma"].default_value = 1.5
+            m.node_tree.links.new(texture.outputs["Color"], gamma.inputs["Color"])
+            m.node_tree.links.new(gamma.outputs["Color"], m.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
+            self.assert_quarters_as_cycles()
+
+    def test_normal_maps_are_scaled_as_in_cycles(self):
+        """A map that leans to the right in its left half and to the left in its right one; its left half alone is shown."""
+        self.lamp("SUN", energy=3).rotation_euler = (0, 0.7, 0)
+        m = self.image_material()
+        tree = m.node_tree
+        texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+        texture.image.colorspace_settings.name = "Non-Color"
+        texture.image.pixels = [v for i in range(16) for v in (0.8 if i % 4 < 2 else 0.2, 0.5, 0.9, 1)]
+        normals, mapping = tree.nodes.new("ShaderNodeNormalMap"), tree.nodes.new("ShaderNodeMapping")
+        mapping.inputs["Scale"].default_value = (0.5, 1, 1)
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+        tree.links.new(texture.outputs["Color"], normals.inputs["Color"])
+        principled = tree.nodes["Principled BSDF"]
+        tree.links.remove(principled.inputs["Base Color"].links[0])
+        tree.links.new(normals.outputs["Normal"], principled.inputs["Normal"])
+        self.plane(m, size=3)
+        self.assert_quarters_as_cycles()
+        self.export()
+        self.assertEqual(self.warnings, [])
 
     def test_images_go_on_as_in_cycles(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from .. import tiled_images
 from .unsupported import Unsupported
 
 WRAPS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
@@ -91,6 +92,7 @@ def _image(node, output, inputs):
         raise Unsupported(node, f"its extension {node.extension.lower()} has no counterpart")
 
     def look_up(uv):
+        uv = uv / np.array(tiled_images.grid(node.image), np.float32)
         return sample(inputs.place.pixels(node.image), uv, node.extension, node.interpolation == "Closest")
 
     if node.projection == "BOX":
