@@ -13,7 +13,7 @@ RANGE = 1 << 32  # of Blender's random numbers
 
 
 class Owner:
-    """What Object Info tells of an evaluated object and the material on it. random: in [0, 1]; matrix: 4x4 from the object to the
+    """All that Object Info tells of an evaluated object and the material on it. random: in [0, 1]; matrix: 4x4 from the object to the
     world, None where there is none that is the only one."""
 
     def __init__(self, obj=None, material=None, random=0.5, matrix=None):

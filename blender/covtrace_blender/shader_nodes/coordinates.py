@@ -58,7 +58,7 @@ def _mapping(node, output, inputs):
 
 
 def attribute_of(node):
-    """What a node Attribute or Color Attribute calls its attribute; "" is the colour that is active for rendering."""
+    """The name of the attribute of a node Attribute or Color Attribute; "" is the colour that is active for rendering."""
     return node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
 
 

@@ -96,5 +96,5 @@ class Evaluator:
 
 
 def evaluated(get, place):
-    """What a function of an Evaluator gives at places, the mean over the angles of sight where it hangs on those."""
+    """The value of a function of an Evaluator at places, the mean over the angles of sight where it hangs on those."""
     return sight.mean_over_angles(lambda place: get(Evaluator(place)), place)

@@ -10,7 +10,7 @@ COSINES = np.sqrt((np.arange(ANGLES) + 0.5) / ANGLES)  # each stands for as much
 
 
 def mean_over_angles(get, place):
-    """What `get(place)` gives, or its mean where nodes ask the place for the angle of sight."""
+    """The value of `get(place)`, or its mean where nodes ask the place for the angle of sight."""
     found = get(place)
     if not place.hangs_on_angle:
         return found
