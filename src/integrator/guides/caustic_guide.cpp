@@ -27,6 +27,9 @@ constexpr int64_t kSketchRounds = 4;
 constexpr size_t kFinePhotons = 32768, kFineLeaf = 64;
 constexpr int kMostTreeDepth = 24;
 constexpr uint64_t kProbeKey = 0x70726f6265730000ull;
+/// Most images that a leaf probes, four times as many as it may keep: rooms full of coated and
+/// rough surfaces have hundreds, almost all of them without light.
+constexpr size_t kMostProbed = 4 * GuideMixture::kMostLobes;
 constexpr int kProbes = 16;  // paths that measure how much light a lobe or a leaf brings
 constexpr int kProbeDepth = 5;
 constexpr int kProbeScales = 4;        // lobes about a photon's direction
@@ -108,8 +111,9 @@ CausticGuide::CausticGuide(const LitScene& scene, const SkyGuide& sky, const Lam
         return second_moment(trace_lesson(scene, *this, sky, lamps, {}, 0, count));
     };
     const auto give_up = [&](double left) {
+        const GuideOutcome outcome{GuideState::unused, 0, 0, left, outcome_.most_probed};
         *this = {};
-        outcome_.second_moment = left;
+        outcome_ = outcome;
         if (!photons.empty()) outcome_.state = GuideState::gave_up;
     };
     // Learn from a few photons whether it pays
@@ -176,6 +180,8 @@ uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image
         // The leaf is larger than its photons: light does not end where the last one fell.
         const Vec3 margin = size * 0.25f + Vec3{1, 1, 1} * (0.05f * size[axis]);
         leaves_.push_back({{bounds.lo - margin, bounds.hi + margin}, 0, 0, 0});
+        keep_brightest(images, kMostProbed);
+        outcome_.most_probed = std::max(outcome_.most_probed, images.size());
         regions.push_back({photons, std::move(images)});
         return index;
     }
@@ -203,10 +209,19 @@ void CausticGuide::refine(std::span<const CausticPhoton> photons, std::vector<Im
         const auto cluster = std::span<const CausticPhoton>(sorted).subspan(begin, end - begin);
         if (cluster.size() < CausticImage::kFewestPhotons) continue;
         const uint64_t source = cluster[0].source;
+        float light = 0;
+        for (const CausticPhoton& p : cluster) light += p.weight / float(photons.size());
         std::erase_if(images, [source](const Image& i) { return i.source == source; });
         for (const CausticImage& seen : CausticImage::seen_by(cluster))
-            images.push_back({seen, 0, source});
+            images.push_back({seen, 0, source, light});
     }
+}
+
+void CausticGuide::keep_brightest(std::vector<Image>& images, size_t count) {
+    if (images.size() <= count) return;
+    std::stable_sort(images.begin(), images.end(),
+                     [](const Image& a, const Image& b) { return a.light > b.light; });
+    images.resize(count);
 }
 
 /// Paths that measure the light which a leaf's images, and all else, bring to its photons' places.

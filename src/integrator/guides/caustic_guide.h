@@ -75,6 +75,9 @@ class CausticGuide {
         CausticImage seen;
         float irradiance = 0;  ///< luminance of the irradiance on the surfaces of the leaf
         uint64_t source = 0;   ///< CausticPhoton::source
+        /// Weight of the photons that came this way for each one that came anyhow, in the smallest
+        /// region about the leaf where they were enough to fit an image.
+        float light = 0;
     };
     struct Leaf {
         Bounds3 bounds;   ///< box of its photons with a margin; no guide beyond it
@@ -101,6 +104,8 @@ class CausticGuide {
                    int depth, std::vector<Region>& regions);
     /// Fits an image to each source that the photons suffice for; other images stay as they are.
     static void refine(std::span<const CausticPhoton> photons, std::vector<Image>& images);
+    /// Keeps the `count` images of the most light, where there are more.
+    static void keep_brightest(std::vector<Image>& images, size_t count);
     /// Measures how much light there is to be found in each image, drops images that bring nothing,
     /// notes how much is hidden, and returns the share of the samples for the others. `key` seeds
     /// the leaf's random numbers.

@@ -37,6 +37,7 @@ struct GuideOutcome {
     /// Second moment of the light that it leads to with the guide over that without it, as a trial
     /// on paths that it was not learnt from measured it; 0 where there was none.
     double second_moment = 0;
+    size_t most_probed = 0;  ///< most images of lights that a place was searched for at once
 };
 
 }  // namespace covtrace
