@@ -23,9 +23,9 @@ struct AreaLight {
     TextureId image = -1, alpha = -1;  ///< textures that the radiance varies by; -1: none
     bool is_visible = true;  ///< false where a constant alpha of 0 hides the shape from all rays
     RayKinds visible_to = kEveryRay;
-    std::optional<SpotCone> cone{};          ///< that the light stays within
-    float cone_variance = 0;                 ///< SpotCone::variance
-    std::optional<LightImage> directions{};  ///< factor by the direction that the light leaves in
+    std::optional<SpotCone> cone;          ///< that the light stays within
+    float cone_variance = 0;               ///< SpotCone::variance
+    std::optional<LightImage> directions;  ///< factor by the direction that the light leaves in
     float soft_radius = 0;   ///< of a sphere with AreaLightDescription::soft_falloff; 0: none
     MaterialId layers = -1;  ///< material whose layers the light has to get through; -1: none
     Rgb mean_factor{1};      ///< mean of image and alpha together

@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(Places, Aim,
                                          Case{"at_10000", 1e4f}, Case{"moving", 0, true},
                                          Case{"moving_at_3000", 3000, true},
                                          Case{"behind_windows", 3000, false, true}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& instance) { return instance.param.name; });
 
 /// The spacing of floats as large as v.
 float step_at(float v) {
@@ -250,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(Places, Shade,
                                          ShadeCase{"moving", 0, 0, true},
                                          ShadeCase{"moving_at_3000", 3000, 8, true},
                                          ShadeCase{"moving_at_10000", 1e4f, 8, true}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& instance) { return instance.param.name; });
 
 /// A lamp's housing hides it from afar, too.
 TEST(AimedRay, MeetsHousingsOfDistantLamps) {

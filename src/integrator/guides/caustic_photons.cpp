@@ -161,7 +161,7 @@ class Pilot {
     struct SampledWay {
         float through_panes = 0;  ///< probability of having gone through panes alone; 0: other ways
         int mirror = -1;          ///< flat mirror that alone it met; -1: other ways
-        Ray from_mirror{};        ///< from there back to the light
+        Ray from_mirror;          ///< from there back to the light
         float reflected = 0;      ///< probability of having been reflected there
     };
 
