@@ -27,9 +27,9 @@ constexpr int64_t kSketchRounds = 4;
 constexpr size_t kFinePhotons = 32768, kFineLeaf = 64;
 constexpr int kMostTreeDepth = 24;
 constexpr uint64_t kProbeKey = 0x70726f6265730000ull;
-/// Most images that a leaf probes, four times as many as it may keep: rooms full of coated and
+/// Most images that a leaf probes, sixteen times as many as it may keep: rooms full of coated and
 /// rough surfaces have hundreds, almost all of them without light.
-constexpr size_t kMostProbed = 4 * GuideMixture::kMostLobes;
+constexpr size_t kMostProbed = 16 * GuideMixture::kMostLobes;
 constexpr int kProbes = 16;  // paths that measure how much light a lobe or a leaf brings
 constexpr int kProbeDepth = 5;
 constexpr int kProbeScales = 4;        // lobes about a photon's direction
