@@ -6,9 +6,15 @@ from ..working_space import luminance
 from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, musgrave, noise_nodes, patterns, ramps, sight
 from .unsupported import Unsupported
 
+
+def _conversion(node, output, inputs):
+    return (inputs.vector if output.type in ("RGBA", "VECTOR") else inputs.number)(0)
+
+
 # Values by the type of the node: function(node, output, Inputs) to a number or a vector, as the output's type is.
 NODES = {**adjustments.NODES, **blending.NODES, **colours.NODES, **coordinates.NODES, **gradients.NODES, **images.NODES,
-         **light_path.NODES, **maths.NODES, **musgrave.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES, **sight.NODES}
+         **light_path.NODES, **maths.NODES, **musgrave.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES, **sight.NODES,
+         "CONVERSION": _conversion}
 
 
 class Inputs:
@@ -67,11 +73,11 @@ class Evaluator:
         return self._get(socket, True)
 
     def _get(self, socket, wants_vector):
-        if not socket.is_linked:
+        link = next(iter(socket.links), None)
+        if link is None:
             value = np.asarray(socket.default_value, np.float32)
             value, kind = (value, "VALUE") if value.ndim == 0 else (value[:3], socket.type)
         else:
-            link = socket.links[0]
             value, kind = self.output(link.from_node, link.from_socket)
         is_vector = kind in ("RGBA", "VECTOR")
         if is_vector == wants_vector:

@@ -6,9 +6,17 @@ from ..working_space import luminance
 
 
 def flat_output(tree):
-    """The FlatNode of a tree's active output for Cycles; None where there is none."""
-    output = tree.get_output_node("CYCLES")
-    return output and FlatNode(output, tree)
+    """The FlatNode of a tree's active output for Cycles, which may be in a group; None where there is none."""
+    return _output_of(tree, tree, ())
+
+
+def _output_of(inner, tree, groups):
+    """The same of a tree inside of these groups."""
+    output = inner.get_output_node("CYCLES")
+    if output:
+        return FlatNode(output, tree, groups)
+    inside = (_output_of(node.node_tree, tree, (*groups, node)) for node in inner.nodes if node.type == "GROUP" and node.node_tree)
+    return next((found for found in inside if found), None)
 
 
 def flat_socket(socket):
@@ -69,6 +77,17 @@ class _Link:
         self.from_node, self.from_socket = from_node, from_socket
 
 
+class Conversion:
+    """A node that turns what reaches a FlatSocket into its type, as a socket of a group does, or into the type of an output, as a
+    muted node does."""
+
+    type = "CONVERSION"
+
+    def __init__(self, socket):
+        self.inputs = [socket]
+        self.name, self.path = socket.name, (*socket.node.path, "", socket.identifier)
+
+
 class FlatSocket:
     """A socket of a FlatNode. As an input it is linked where a node's output reaches it, through groups or not; else its
     default_value is what reaches it: that of the group's socket, where one feeds it."""
@@ -98,29 +117,59 @@ class FlatSocket:
         if self._socket.is_output:
             return own
         link, end = self._source()
-        return own if link else _as_type_of(own, end)
+        if link or end is self._socket:
+            return own
+        return _as_type_of(own, end) if end else _zero(own)
 
     def _source(self):
-        """(_Link or None, the socket whose default value counts without one)."""
+        """(_Link or None, the socket whose default value counts without one, None for zero). Reroutes, muted nodes and groups without
+        an output that nothing feeds are zero, as in Cycles."""
         socket, groups = self._socket, self.node.groups
+        if not socket.is_linked:  # Blender looks through all links of a tree for those of one socket
+            return None, socket
         while link := next((k for k in socket.links if k.is_valid and not k.is_muted), None):
             node, output = link.from_node, link.from_socket
             if node.type == "REROUTE":
                 socket = node.inputs[0]
             elif node.mute:
-                socket = next((k.from_socket for k in node.internal_links if k.to_socket == output), None)
+                socket = next((k.from_socket for k in node.internal_links if k.to_socket == output), self._socket)
+                if socket != self._socket and "VALUE" in (_kind(socket), _kind(output)) and _kind(socket) != _kind(output):
+                    muted = FlatNode(node, self.node.tree, groups)
+                    return _Link(Conversion(FlatSocket(socket, muted)), FlatSocket(output, muted)), None
             elif node.type == "GROUP":
                 groups, socket = (*groups, node), _output_inside(node.node_tree, output.identifier)
             elif node.type == "GROUP_INPUT":
-                group, groups = groups[-1], groups[:-1]
-                socket = next((s for s in group.inputs if s.identifier == output.identifier), None)
+                # The outermost tree has none: nothing feeds its group inputs.
+                group, groups = (groups[-1], groups[:-1]) if groups else (None, ())
+                socket = next((s for s in group.inputs if s.identifier == output.identifier), None) if group else self._socket
             else:
                 found = FlatNode(node, self.node.tree, groups)
                 return _Link(found, FlatSocket(output, found)), None
-            if socket is None:
+            if socket is None or socket == self._socket:
                 break
-        is_end = socket is None or socket.node.type == "REROUTE"
-        return None, self._socket if is_end else socket
+            if _kind(socket) != _kind(self._socket):
+                return self._converted(FlatSocket(socket, FlatNode(socket.node, self.node.tree, groups)))
+        is_zero = socket is None or socket != self._socket and (socket.node.type == "REROUTE" or socket.node.mute)
+        return None, None if is_zero else self._socket if socket == self._socket else socket
+
+    def _converted(self, passed):
+        """The _source through a socket of another type."""
+        link, end = passed._source()
+        if link is None:
+            return None, end and passed
+        own, between, first = (_kind(socket) for socket in (self, passed, link.from_socket))
+        is_narrow = between == "VALUE" and "VALUE" not in (own, first)
+        is_weighed = own == "VALUE" and "VALUE" not in (between, first) and between != first
+        return _Link(Conversion(passed), passed) if is_narrow or is_weighed else link, None
+
+
+def _kind(socket):
+    """The type of a socket, all of one number being the same."""
+    return socket.type if socket.type in ("RGBA", "VECTOR", "SHADER") else "VALUE"
+
+
+def _zero(own):
+    return (0.0, 0.0, 0.0, 1.0)[:len(own)] if hasattr(own, "__len__") else 0.0
 
 
 def _output_inside(tree, identifier):
