@@ -1,47 +1,66 @@
 """Attributes of meshes, colours among them, that nodes ask for by name."""
 
+import bpy
 import numpy as np
 
 from . import export_meshes
 from .node_signature import all_nodes
-from .shader_nodes.coordinates import attribute_of
+from .shader_nodes.coordinates import ACTIVE_COLOUR, attribute_of
 
-PROPERTIES = {"FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4), "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2)}
+# (property of an element, how many numbers it has, their type) by the kind of attribute. Cycles knows these alone.
+PROPERTIES = {"FLOAT": ("value", 1, np.float32), "INT": ("value", 1, np.int32), "BOOLEAN": ("value", 1, bool),
+              "FLOAT2": ("vector", 2, np.float32), "FLOAT_VECTOR": ("vector", 3, np.float32), "FLOAT_COLOR": ("color", 4, np.float32),
+              "BYTE_COLOR": ("color", 4, np.float32), "QUATERNION": ("value", 4, np.float32)}
+if bpy.app.version >= (4, 0, 0):  # not in Cycles 3.4, but in 4.5; of those between none was measured
+    PROPERTIES["INT8"] = "value", 1, np.int32
 
 
 def names(tree):
-    """Those that the nodes of a tree ask for; "" is the colour that is active for rendering."""
+    """Those that the nodes of a tree ask for."""
     return {attribute_of(node) for node in all_nodes(tree) if node.type in ("ATTRIBUTE", "VERTEX_COLOR")}
 
 
 def corners(mesh, wanted, chosen):
     """{(part, name): (n, 3, 3)} at the corners of the chosen triangles of what the mesh has of the `wanted` attributes: part
-    "ATTRIBUTE" is the attribute itself, a number three times, and "ALPHA" three times the opacity of a colour, 1 of all else."""
+    "ATTRIBUTE" is the attribute itself, a number three times, "NUMBER" three times the number that it is, and "ALPHA" three times the
+    opacity of a colour, 1 of all else."""
     found = {}
     for name in wanted:
-        attribute = _attribute(mesh, name)
-        if attribute is None or attribute.data_type == "STRING" or not len(attribute.data):
+        values = _corner_values(mesh, name, chosen)
+        if values is None:
             continue
-        values = _at_corners(mesh, attribute.domain, _values(attribute), chosen)
-        found["ATTRIBUTE", name] = np.repeat(values, 3, axis=-1) if values.shape[-1] == 1 else \
-            np.concatenate((values[..., :3], np.zeros((*values.shape[:-1], max(0, 3 - values.shape[-1])), np.float32)), axis=-1)
-        alpha = values[..., 3:] if values.shape[-1] == 4 else np.ones_like(values[..., :1])
-        found["ALPHA", name] = np.repeat(alpha, 3, axis=-1)
+        width = values.shape[-1]
+        found["ATTRIBUTE", name] = np.repeat(values, 3, axis=-1) if width == 1 else \
+            np.concatenate((values[..., :3], np.zeros((*values.shape[:-1], max(0, 3 - width)), np.float32)), axis=-1)
+        # As in Cycles: the mean of a colour, and no luminance, and the first one of two numbers.
+        number = values[..., :3].mean(axis=-1, keepdims=True) if width > 2 else values[..., :1]
+        found["NUMBER", name] = np.repeat(number, 3, axis=-1)
+        found["ALPHA", name] = np.repeat(values[..., 3:] if width == 4 else np.ones_like(values[..., :1]), 3, axis=-1)
     return found
 
 
+def _corner_values(mesh, name, chosen):
+    """(n, 3, 1 to 4), of colours linear; None of what the mesh has not."""
+    attribute = _attribute(mesh, name)
+    if attribute is not None and attribute.data_type in PROPERTIES and len(attribute.data):
+        return _at_corners(mesh, attribute.domain, _values(attribute), chosen)
+    # Before Blender 3.5 UV maps are none of the attributes.
+    if name is not ACTIVE_COLOUR and name in mesh.uv_layers:
+        return export_meshes.loop_uvs(mesh, mesh.uv_layers[name])[export_meshes.triangle_loops(mesh)[chosen]]
+    return None
+
+
 def _attribute(mesh, name):
-    if name:
+    if name is not ACTIVE_COLOUR:
         return mesh.attributes.get(name)
     index, colours = mesh.color_attributes.render_color_index, mesh.color_attributes
     return colours[index] if 0 <= index < len(colours) else None
 
 
 def _values(attribute):
-    """(n, 1 to 4); colours are linear."""
-    name, width = PROPERTIES.get(attribute.data_type, ("value", 1))
-    is_whole = attribute.data_type in ("INT", "INT8", "BOOLEAN")
-    values = np.empty(width * len(attribute.data), np.int32 if is_whole else np.float32)
+    """(n, 1 to 4)."""
+    name, width, kind = PROPERTIES[attribute.data_type]
+    values = np.empty(width * len(attribute.data), kind)
     attribute.data.foreach_get(name, values)
     return values.reshape(-1, width).astype(np.float32)
 

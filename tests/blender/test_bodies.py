@@ -154,6 +154,25 @@ class BodiesTest(BlenderTest):
             names.append(tree.material.name)
         self.assert_bodies(names)
 
+    def test_what_attributes_lack_is_as_in_cycles(self):
+        """Two numbers as one, UV maps by name, what a mesh has not, a node without a name, and kinds that Cycles does not know."""
+        for title, name, output in (("two", "pair", "Fac"), ("map", "UVMap", "Color"), ("none", "nothing", "Alpha"), ("nameless", "", "Color"),
+                                    ("turn", "turn", "Color")):
+            tree = Tree(title)
+            node = tree.node("Attribute")
+            node.attribute_name = name
+            tree.show(node, output)
+            obj = self.place(self.sphere(), tree.material, is_smooth=True)
+            for number, element in enumerate(obj.data.attributes.new("pair", "FLOAT2", "POINT").data):
+                element.vector = (number % 3 / 3, 0.9)
+            for element in obj.data.color_attributes.new("colour", "BYTE_COLOR", "CORNER").data:
+                element.color = (0.9, 0.5, 0.2, 1)
+            if bpy.app.version >= (4, 0, 0):
+                for element in obj.data.attributes.new("turn", "QUATERNION", "POINT").data:
+                    element.value = (0.8, 0.2, 0.5, 0.3)
+        ours, theirs = ([np.mean(image[f"Combined.{c}"]) for c in "RGB"] for image in (render("COVTRACE", 16), render("CYCLES", 16)))
+        np.testing.assert_allclose(ours, theirs, rtol=0.03)
+
     def test_heights_on_bodies_are_as_in_cycles(self):
         self.light_from_the_side()
         material = self.bumpy()

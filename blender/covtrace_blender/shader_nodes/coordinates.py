@@ -57,16 +57,21 @@ def _mapping(node, output, inputs):
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
 
 
+ACTIVE_COLOUR = None  # the name of the colour that is active for rendering
+
+
 def attribute_of(node):
-    """The name of the attribute of a node Attribute or Color Attribute; "" is the colour that is active for rendering."""
-    return node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
+    """The name of the attribute of a node Attribute or Color Attribute, or ACTIVE_COLOUR."""
+    return node.layer_name or ACTIVE_COLOUR if node.type == "VERTEX_COLOR" else node.attribute_name
 
 
 def _attribute(node, output, inputs):
     if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY":
         raise Unsupported(node, f"attributes of its type {node.attribute_type.lower()} have no counterpart")
-    found = inputs.place.attribute(node, attribute_of(node), "ALPHA" if output.name == "Alpha" else "ATTRIBUTE")
-    # The number of a colour is its mean, and no luminance, as in Cycles.
+    part = {"Fac": "NUMBER", "Alpha": "ALPHA"}.get(output.name, "ATTRIBUTE")
+    # As in Cycles: Attribute takes what a mesh has not for a number, which is opaque.
+    missing = 1.0 if part == "ALPHA" and node.type == "ATTRIBUTE" else 0.0
+    found = inputs.place.attribute(node, attribute_of(node), part, missing)
     return found.mean(axis=-1) if output.name in ("Fac", "Alpha") else found
 
 

@@ -51,8 +51,9 @@ class UvPlace(_Place):
         """(n, 3): "OBJECT" or "GENERATED" coordinates, the "NORMAL" in the object's space; "WORLD" and "WORLD NORMAL"."""
         raise NeedsBody(node, f"{kind.lower()} coordinates do not follow from a UV map")
 
-    def attribute(self, node, name, part):
-        """(n, 3) of the mesh's attribute of this name: what it is ("ATTRIBUTE") or three times its "ALPHA"."""
+    def attribute(self, node, name, part, missing):
+        """(n, 3) of the mesh's attribute of this name: what it is ("ATTRIBUTE"), or three times its "NUMBER" or "ALPHA"; `missing` where
+        the mesh has none."""
         raise NeedsBody(node, "attributes do not follow from a UV map")
 
 
@@ -72,15 +73,16 @@ class BodyPlace(_Place):
         return list(self._known)
 
     def uv_of(self, node, name):
-        return self._values_or_zero(("UV", name))
+        # As in Cycles: a map that a mesh has not is zero everywhere.
+        return self._values_or(("UV", name), 0.0)
 
-    def attribute(self, node, name, part):
-        return self._values_or_zero((part, name))
+    def attribute(self, node, name, part, missing):
+        return self._values_or((part, name), missing)
 
-    def _values_or_zero(self, kind):
+    def _values_or(self, kind, missing):
         if not self._body.knows(kind):
-            # As in Cycles: a map or an attribute that a mesh has not is zero everywhere.
-            self._known[kind] = np.zeros((len(self._texels), 3), np.float32)
+            self._known.setdefault(kind, None)
+            return np.full((len(self._texels), 3), missing, np.float32)
         return self._values(kind)
 
     def coordinates(self, node, kind):
