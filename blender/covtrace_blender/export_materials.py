@@ -13,7 +13,7 @@ from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
 from .node_signature import all_nodes
-from .owner import Owner, asks_for_owner
+from .owner import Owner, asked_of_owner
 from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS, groups_of_rays
 from .shader_nodes.unsupported import NeedsBody, Unsupported
@@ -90,8 +90,9 @@ class MaterialExporter(SumExporter):
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
         nodes = list(all_nodes(material.node_tree))
         self.baker.owner = None
-        if asks_for_owner(nodes):
-            self.baker.owner, self.hangs_on_object = self.owner, True
+        asked = asked_of_owner(nodes)
+        if asked:
+            self.baker.owner, self.hangs_on_object = self.owner.only(asked), True
         if not any(node.type == "LIGHT_PATH" for node in nodes):
             return [Variant(RAYS, *self._export(material))]
         found = []

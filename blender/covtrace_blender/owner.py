@@ -24,6 +24,12 @@ class Owner:
         if matrix is not None:
             self._values["Location"] = tuple(float(v) for v in matrix[:3, 3])
 
+    def only(self, names):
+        """The same, of which nothing but the outputs of these names is known."""
+        found = Owner()
+        found._values = {name: value for name, value in self._values.items() if name in names}
+        return found
+
     def key(self):
         """Equal for owners of which Object Info tells the same."""
         return tuple(sorted(self._values.items()))
@@ -33,14 +39,15 @@ class Owner:
         return None if name not in self._values else np.asarray(self._values[name], np.float32)
 
 
-def asks_for_owner(nodes):
-    return any(node.type == "OBJECT_INFO" for node in nodes)
+def asked_of_owner(nodes):
+    """The names of the outputs of Object Info that nodes ask for."""
+    return {output.name for node in nodes if node.type == "OBJECT_INFO" for output in node.outputs if output.is_linked}
 
 
 def asks_for_random(material):
     """Whether a material's nodes ask for the random number of what it is on."""
     tree = material.node_tree if material and material.use_nodes else None
-    return tree is not None and any(node.type == "OBJECT_INFO" and node.outputs["Random"].is_linked for node in all_nodes(tree))
+    return tree is not None and "Random" in asked_of_owner(all_nodes(tree))
 
 
 def random_of(instance):

@@ -82,3 +82,18 @@ class ObjectInfoTest(BlenderTest):
         bpy.context.object.data.materials.append(thing.data.materials[0])
         self.export()
         self.assertTrue(any("the location of what has instances" in w for w in self.warnings), self.warnings)
+
+    def test_places_that_nothing_asks_for_bake_nothing_anew(self):
+        """Objects that differ in their places share the image of what hangs on their index alone."""
+        m = self.shining("Object Index")
+        tree = m.node_tree
+        emission = next(node for node in tree.nodes if node.type == "EMISSION")
+        checker, colour = tree.nodes.new("ShaderNodeTexChecker"), emission.inputs["Color"].links[0].from_socket
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], checker.inputs["Vector"])
+        tree.links.new(colour, checker.inputs["Color1"])
+        tree.links.new(checker.outputs["Color"], emission.inputs["Color"])
+        for number in range(3):
+            self.plane(m, number)
+        files = []
+        self.export(lambda folder: files.extend(folder.glob("texture*")))
+        self.assertEqual(len(files), 1)
