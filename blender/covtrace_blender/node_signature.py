@@ -61,7 +61,8 @@ def _content(tree):
         if getattr(node, "node_tree", None):
             entry.append(_content(node.node_tree))
         found.append(entry)
-    links = [(k.from_node.name, k.from_socket.identifier, k.to_node.name, k.to_socket.identifier) for k in tree.links]
+    links = [(k.from_node.name, k.from_socket.identifier, k.to_node.name, k.to_socket.identifier, k.is_muted)
+             for k in tree.links]
     return found, links
 
 

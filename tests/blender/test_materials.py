@@ -374,10 +374,11 @@ class GroupsTest(BlenderTest):
 
     def test_muted_shaders_pass_on_their_first_one(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
-        m = material(Base_Color=(0.8, 0.3, 0.2, 1), Roughness=1.0, Specular=0.0)
+        m = material()
         tree = m.node_tree
-        mix = tree.nodes.new("ShaderNodeMixShader")
-        tree.links.new(tree.nodes["Principled BSDF"].outputs[0], mix.inputs[1])
+        mix, matt = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+        matt.inputs["Color"].default_value = (0.8, 0.3, 0.2, 1)
+        tree.links.new(matt.outputs[0], mix.inputs[1])
         tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], mix.inputs[2])
         tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
         mix.mute = True
