@@ -1,10 +1,15 @@
 """Images in tiles (UDIM), as one image over all squares of the UV plane that they fill."""
 
+import os
+
 import bpy
 import numpy as np
 
 FIRST, PER_ROW = 1001, 10  # number of the tile at the origin; columns
 MOST_TEXELS = 1 << 26  # of all tiles together, beyond which they are coarser
+MOST_BYTES = 1 << 30  # kept between exports, but for the last image
+
+_known = {}  # {key: what _join gives}, in the order of their last use
 
 
 def grid(image):
@@ -17,12 +22,45 @@ def grid(image):
 
 def joined(image, pixels_of, missing, warn):
     """(h, w, 4) of all tiles, from the top. pixels_of(image of a tile): (h, w, 4), or None where its file is missing; missing: the
-    colour where there is no tile."""
-    tiles, (columns, rows) = {}, grid(image)
+    colour where there is no tile.
+
+    What files have is read once: Blender takes the image of a tile, loaded for its pixels, for a change of the scene, and would have a
+    viewport export it without end."""
+    key = _key(image)
+    found = _known.pop(key, None) or _join(image, pixels_of, missing)
+    if key:
+        _known[key] = found
+        while len(_known) > 1 and sum(whole.nbytes for whole, _ in _known.values()) > MOST_BYTES:
+            del _known[next(iter(_known))]
+    whole, lacking = found
+    for number in lacking:
+        warn(f"the file of tile {number} of the image '{image.name}' is missing; it is magenta, as in Cycles")
+    return whole
+
+
+def _key(image):
+    """Equal for images of the same pixels; None of one that is not as its files are."""
+    if image.is_dirty or image.packed_file:
+        return None
+    times = tuple((tile.number, _time(_path(image, tile))) for tile in image.tiles)
+    return image.filepath, image.library and image.library.filepath, times, image.colorspace_settings.name, image.alpha_mode
+
+
+def _time(path):
+    """When a file was changed last; None of one that is missing."""
+    try:
+        return os.stat(path).st_mtime_ns
+    except OSError:
+        return None
+
+
+def _join(image, pixels_of, missing):
+    """(pixels as `joined` has them, numbers of the tiles whose files are missing)."""
+    tiles, lacking, (columns, rows) = {}, [], grid(image)
     for tile in image.tiles:
         found = _tile(image, tile, pixels_of)
         if found is None:
-            warn(f"the file of tile {tile.number} of the image '{image.name}' is missing; it is magenta, as in Cycles")
+            lacking.append(tile.number)
         else:
             tiles[_place(tile)] = found
     height, width = (max((t.shape[axis] for t in tiles.values()), default=1) for axis in (0, 1))
@@ -33,7 +71,7 @@ def joined(image, pixels_of, missing, warn):
     for (column, row), found in tiles.items():
         top = (rows - 1 - row) * height
         whole[top:top + height, column * width:(column + 1) * width] = _resized(found, height, width)
-    return whole
+    return whole, lacking
 
 
 def _place(tile):
@@ -41,15 +79,18 @@ def _place(tile):
     return (tile.number - FIRST) % PER_ROW, (tile.number - FIRST) // PER_ROW
 
 
+def _path(image, tile):
+    column, row = _place(tile)
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    return path.replace("<UDIM>", str(tile.number)).replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
+
+
 def _tile(image, tile, pixels_of):
     """The pixels of a tile, of which Blender itself shows those of the first one alone; None where they are missing."""
     if tile == image.tiles[0] and image.size[0] > 0:
         return pixels_of(image)
-    column, row = _place(tile)
-    path = bpy.path.abspath(image.filepath, library=image.library)
-    path = path.replace("<UDIM>", str(tile.number)).replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
     try:
-        alone = bpy.data.images.load(path)
+        alone = bpy.data.images.load(_path(image, tile))
     except RuntimeError:
         return None
     try:

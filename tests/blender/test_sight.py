@@ -23,7 +23,7 @@ class SightTest(BlenderTest):
             ball.data.materials.append(tree.material)
             with self.subTest(kind, output=output):
                 ours, theirs = (np.array(mean(render(engine, 16))) for engine in ("COVTRACE", "CYCLES"))
-                np.testing.assert_allclose(ours, theirs, rtol=0.06)
+                np.testing.assert_allclose(ours, theirs, rtol=0.04)
                 self.export()
                 self.assertEqual(len([w for w in self.warnings if "hangs on the angle of sight" in w]), 1, self.warnings)
             bpy.data.objects.remove(ball)

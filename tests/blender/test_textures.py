@@ -6,7 +6,7 @@ import unittest.mock
 
 import bpy
 from addon_support import BlenderTest, material, mean, render, socket
-from covtrace_blender import body_baking
+from covtrace_blender import body_baking, tiled_images
 from covtrace_blender.baking import Baker
 
 
@@ -164,6 +164,10 @@ class TexturesTest(BlenderTest):
             texture.image = self.tiled_image(folder)
             self.assert_quarters_as_cycles()
             self.export()
+            self.assertEqual(len([w for w in self.warnings if "tile 1012" in w]), 1, self.warnings)
+            with unittest.mock.patch.object(tiled_images, "_tile") as read:
+                self.export()
+                read.assert_not_called()
             self.assertEqual(len([w for w in self.warnings if "tile 1012" in w]), 1, self.warnings)
             gamma = m.node_tree.nodes.new("ShaderNodeGamma")
             gamma.inputs["Gamma"].default_value = 1.5
