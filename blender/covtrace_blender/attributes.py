@@ -11,8 +11,7 @@ from .shader_nodes.coordinates import ACTIVE_COLOUR, attribute_of
 PROPERTIES = {"FLOAT": ("value", 1, np.float32), "INT": ("value", 1, np.int32), "BOOLEAN": ("value", 1, bool),
               "FLOAT2": ("vector", 2, np.float32), "FLOAT_VECTOR": ("vector", 3, np.float32), "FLOAT_COLOR": ("color", 4, np.float32),
               "BYTE_COLOR": ("color", 4, np.float32), "QUATERNION": ("value", 4, np.float32)}
-if bpy.app.version >= (4, 0, 0):  # not in Cycles 3.4, but in 4.5; of those between none was measured
-    PROPERTIES["INT8"] = "value", 1, np.int32
+SINCE_4 = {"INT8": ("value", 1, np.int32)}  # not in Cycles 3.4, but in 4.5; of those between none was measured
 
 
 def names(tree):
@@ -42,8 +41,9 @@ def corners(mesh, wanted, chosen):
 def _corner_values(mesh, name, chosen):
     """(n, 3, 1 to 4), of colours linear; None of what the mesh has not."""
     attribute = _attribute(mesh, name)
-    if attribute is not None and attribute.data_type in PROPERTIES and len(attribute.data):
-        return _at_corners(mesh, attribute.domain, _values(attribute), chosen)
+    known = {**PROPERTIES, **(SINCE_4 if bpy.app.version >= (4, 0, 0) else {})}
+    if attribute is not None and attribute.data_type in known and len(attribute.data):
+        return _at_corners(mesh, attribute.domain, _values(attribute, *known[attribute.data_type]), chosen)
     # Before Blender 3.5 UV maps are none of the attributes.
     if name is not ACTIVE_COLOUR and name in mesh.uv_layers:
         return export_meshes.loop_uvs(mesh, mesh.uv_layers[name])[export_meshes.triangle_loops(mesh)[chosen]]
@@ -57,9 +57,8 @@ def _attribute(mesh, name):
     return colours[index] if 0 <= index < len(colours) else None
 
 
-def _values(attribute):
-    """(n, 1 to 4)."""
-    name, width, kind = PROPERTIES[attribute.data_type]
+def _values(attribute, name, width, kind):
+    """(n, width)."""
     values = np.empty(width * len(attribute.data), kind)
     attribute.data.foreach_get(name, values)
     return values.reshape(-1, width).astype(np.float32)

@@ -9,14 +9,15 @@ import without_blender  # before the package
 from covtrace_blender import baking
 from covtrace_blender.shader_nodes import hashing, images, noise, voronoi
 from covtrace_blender.shader_nodes.evaluator import Evaluator
+from covtrace_blender.shader_nodes.flat import flat_socket
 from covtrace_blender.shader_nodes.place import UvPlace
 from covtrace_blender.shader_nodes.unsupported import Unsupported
 
 
 class Socket:
-    def __init__(self, name, kind, value=None):
-        self.name = self.identifier = name
-        self.type, self.default_value, self.links = kind, value, []
+    def __init__(self, node, name, kind, value=None, is_output=False):
+        self.node, self.name, self.identifier, self.is_output = node, name, name, is_output
+        self.type, self.default_value, self.links, self.id_data = kind, value, [], None
 
     @property
     def is_linked(self):
@@ -30,22 +31,23 @@ class Node:
 
     def __init__(self, kind, inputs=None, outputs=None, **settings):
         Node.count += 1
-        self.type, self.name = kind, f"{kind} {Node.count}"
+        self.type, self.name, self.mute = kind, f"{kind} {Node.count}", False
         self.__dict__.update(settings)
-        self.outputs = [Socket(name, type_) for name, type_ in (outputs or {"Color": "RGBA"}).items()]
+        self.outputs = [Socket(self, name, type_, is_output=True) for name, type_ in (outputs or {"Color": "RGBA"}).items()]
         self.inputs = []
         for name, value in (inputs or {}).items():
             is_link = isinstance(value, tuple) and isinstance(value[0], Node)
             is_vector = hasattr(value, "__len__") and not is_link
-            socket = Socket(name, "RGBA" if is_vector else "VALUE", None if is_link else value)
+            socket = Socket(self, name, "RGBA" if is_vector else "VALUE", None if is_link else value)
             if is_link:
-                socket.links.append(types.SimpleNamespace(from_node=value[0], from_socket=value[0].outputs[value[1]]))
+                socket.links.append(types.SimpleNamespace(from_node=value[0], from_socket=value[0].outputs[value[1]],
+                                                          is_valid=True, is_muted=False))
             self.inputs.append(socket)
 
 
 def input_of(node, output=0):
     """A socket that the node's output is linked to."""
-    return Node("END", {"end": (node, output)}).inputs[0]
+    return flat_socket(Node("END", {"end": (node, output)}).inputs[0])
 
 
 UV = Node("TEX_COORD", outputs={"UV": "VECTOR"}, object=None)
