@@ -5,7 +5,7 @@ import numpy as np
 
 from ..fresnel import exponent_of_facing, reflectance
 
-ANGLES = 8
+ANGLES = 8  # four leave a colour by Fresnel 6 % off, and each costs an evaluation
 COSINES = np.sqrt((np.arange(ANGLES) + 0.5) / ANGLES)  # each stands for as much of the directions
 
 
