@@ -32,7 +32,8 @@ class Layout:
 
 class Baked:
     """The result: a constant, or an image and its layout; the names of the UV maps that it reads. is_cut: it repeats where the nodes
-    do not. is_mean: whether they hang on the angle of sight, and this is the mean. kinds: of coordinates on a body that the nodes have asked for."""
+    do not. is_mean: whether they hang on the angle of sight, and this is the mean. kinds: of coordinates on a body that the nodes have
+    asked for."""
 
     def __init__(self, constant=None, image=None, layout=None, uv_maps=(), is_cut=False, kinds=(), is_mean=False):
         self.constant, self.image, self.layout, self.uv_maps, self.is_cut = constant, image, layout, tuple(uv_maps), is_cut

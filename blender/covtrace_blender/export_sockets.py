@@ -95,7 +95,8 @@ class SocketReader:
     def _baked_function(self, get, socket, how, only_unit_square=False):
         """Value of what a function of an Evaluator gives. It hangs on the tree of the socket, and is told from others of that socket by
         `how`. Raises Unsupported."""
-        baked = self.baked.of(socket, self.surface, (*how, self.baker.ray, self.baker.owner and self.baker.owner.key()), lambda: self.baker.bake(get, self.surface, only_unit_square))
+        how = (*how, self.baker.ray, self.baker.owner and self.baker.owner.key())
+        baked = self.baked.of(socket, self.surface, how, lambda: self.baker.bake(get, self.surface, only_unit_square))
         if baked.is_cut:
             self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")
         if baked.is_mean:

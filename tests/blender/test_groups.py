@@ -2,6 +2,7 @@
 
 import bpy
 from addon_support import BlenderTest, material, mean, render, socket
+from node_trees import Tree
 
 IS_NEW = bpy.app.version >= (4, 0)
 
@@ -149,3 +150,12 @@ class GroupsTest(BlenderTest):
         inner.links.new(next(n for n in inner.nodes if n.type == "GROUP_INPUT").outputs[0], shader.inputs["Color"])
         inner.links.new(shader.outputs[0], output.inputs["Surface"])
         self.assert_shines_as_cycles(m)
+
+    def test_a_link_that_is_muted_is_baked_anew(self):
+        tree = Tree()
+        gamma = tree.node("Gamma", inputs={"Color": (tree.colours(), 0)})
+        tree.show(gamma)
+        self.plane(tree.material)
+        self.assertIn("imagemap", self.export())
+        gamma.inputs["Color"].links[0].is_muted = True
+        self.assertNotIn("imagemap", self.export())

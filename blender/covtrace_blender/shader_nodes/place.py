@@ -1,8 +1,8 @@
 """The places of a surface at which nodes are evaluated, and what nodes ask of them.
 
 Each has `ray`: the kind of ray that sees them, one of light_path.RAYS, None where that is not known; `images`: those that nodes
-have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from place to place; `sight`: the cosine of the angle of sight, and `hangs_on_angle`: whether nodes
-have asked for it.
+have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from
+place to place; `sight`: the cosine of the angle of sight, and `hangs_on_angle`: whether nodes have asked for it.
 """
 
 import numpy as np

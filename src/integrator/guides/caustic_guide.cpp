@@ -28,7 +28,7 @@ constexpr size_t kFinePhotons = 32768, kFineLeaf = 64;
 constexpr int kMostTreeDepth = 24;
 constexpr uint64_t kProbeKey = 0x70726f6265730000ull;
 /// Most images that a leaf probes, sixteen times as many as it may keep: rooms full of coated and
-/// rough surfaces have hundreds, almost all of them without light.
+/// rough surfaces have hundreds, almost all of them without light (docs/decisions/0152).
 constexpr size_t kMostProbed = 16 * GuideMixture::kMostLobes;
 constexpr int kProbes = 16;  // paths that measure how much light a lobe or a leaf brings
 constexpr int kProbeDepth = 5;
