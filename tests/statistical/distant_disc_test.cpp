@@ -23,19 +23,20 @@ void PrintTo(const SunScene& s, std::ostream* out) {
     *out << s.name;
 }
 
-#define FLOOR \
-    R"(
-Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
-Shape "trianglemesh" "point3 P" [ -4 0 -4  4 0 -4  4 0 4  -4 0 4 ] "integer indices" [ 0 1 2 0 2 3 ]
-Shape "trianglemesh" "point3 P" [ -4 0 2  4 0 2  4 5 2  -4 5 2 ] "integer indices" [ 0 1 2 0 2 3 ]
-)"
-#define BALL(material) \
-    R"(AttributeBegin
-Material )" material R"(
-Translate 0.2 1 0
-Shape "sphere" "float radius" 0.8
-AttributeEnd
-)"
+#define FLOOR                                                                                     \
+    "\n"                                                                                          \
+    "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.6 0.5 ]\n"                                  \
+    "Shape \"trianglemesh\" \"point3 P\" [ -4 0 -4  4 0 -4  4 0 4  -4 0 4 ] \"integer indices\" " \
+    "[ 0 1 2 0 2 3 ]\n"                                                                           \
+    "Shape \"trianglemesh\" \"point3 P\" [ -4 0 2  4 0 2  4 5 2  -4 5 2 ] \"integer indices\" [ " \
+    "0 1 2 0 2 3 ]\n"
+#define BALL(material)                        \
+    "AttributeBegin\n"                        \
+    "Material " material                      \
+    "\n"                                      \
+    "Translate 0.2 1 0\n"                     \
+    "Shape \"sphere\" \"float radius\" 0.8\n" \
+    "AttributeEnd\n"
 
 /// Degrees of suns in a sky, of which balls hide a part.
 constexpr float kSmall = 2;
@@ -131,7 +132,7 @@ TEST_P(Suns, ShineAsBallsFarAway) {
     }
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Suns, testing::ValuesIn(kSuns),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace covtrace

@@ -20,21 +20,21 @@ Shape "trianglemesh" "point3 P" [ -4 0 -4  4 0 -4  4 0 4  -4 0 4 ] "integer indi
 Shape "trianglemesh" "point3 P" [ -4 0 2  4 0 2  4 5 2  -4 5 2 ] "integer indices" [ 0 1 2 0 2 3 ]
 )";
 /// A slab of glass over the floor, 0.2 thick.
-#define SLAB \
-    R"(Material "dielectric" "float eta" 1.5
-Shape "trianglemesh" "point3 P" [ -5 2 -5  -5 2 5  5 2 5  5 2 -5 ] "integer indices" [ 0 2 1 0 3 2 ]
-Shape "trianglemesh" "point3 P" [ -5 2.2 -5  -5 2.2 5  5 2.2 5  5 2.2 -5 ] "integer indices" [ 0 1 2 0 2 3 ]
-)"
-#define LAMP \
-    R"(AttributeBegin
-AreaLightSource "diffuse" "rgb L" [ 30 30 25 ]
-Translate 0.4 3.5 0.3
-Shape "sphere" "float radius" 0.3
-AttributeEnd
-)"
-#define SUN \
-    R"(LightSource "distant" "point3 from" [ 1 3 -0.5 ] "point3 to" [ 0 0 0 ] "rgb L" [ 4 4 3 ] "float angle" 4
-)"
+#define SLAB                                                                                      \
+    "Material \"dielectric\" \"float eta\" 1.5\n"                                                 \
+    "Shape \"trianglemesh\" \"point3 P\" [ -5 2 -5  -5 2 5  5 2 5  5 2 -5 ] \"integer indices\" " \
+    "[ 0 2 1 0 3 2 ]\n"                                                                           \
+    "Shape \"trianglemesh\" \"point3 P\" [ -5 2.2 -5  -5 2.2 5  5 2.2 5  5 2.2 -5 ] \"integer "   \
+    "indices\" [ 0 1 2 0 2 3 ]\n"
+#define LAMP                                               \
+    "AttributeBegin\n"                                     \
+    "AreaLightSource \"diffuse\" \"rgb L\" [ 30 30 25 ]\n" \
+    "Translate 0.4 3.5 0.3\n"                              \
+    "Shape \"sphere\" \"float radius\" 0.3\n"              \
+    "AttributeEnd\n"
+#define SUN                                                                                       \
+    "LightSource \"distant\" \"point3 from\" [ 1 3 -0.5 ] \"point3 to\" [ 0 0 0 ] \"rgb L\" [ 4 " \
+    "4 3 ] \"float angle\" 4\n"
 
 const SampledLightScene kPanes[] = {
     {"slab", LAMP SLAB, 6, 0.2},
@@ -133,7 +133,7 @@ WorldBegin
     }
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Panes, testing::ValuesIn(kPanes),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 /// The guide to caustics probes for light that is left to paths: that of the sun behind a slab is
 /// not, and is all there where it is not sampled.
