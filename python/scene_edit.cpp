@@ -132,6 +132,18 @@ struct MaterialSlots {
         texture("reflectance", m.reflectance, TextureUse::share);
         roughness(m.u_roughness, m.v_roughness);
     }
+    void operator()(SubsurfaceMaterial& m) {
+        slots.push_back(number_slot("scale", m.scale, 0, 1e9));
+        slots.push_back(number_slot("eta", m.border.eta, 0.01, 100));
+        if (m.border.reflectance >= 0) {
+            texture("reflectance", m.border.reflectance, TextureUse::share);
+            texture("mfp", m.mean_free_path, TextureUse::colour);
+        } else {
+            texture("sigma_a", m.absorption, TextureUse::colour);
+            texture("sigma_s", m.scattering, TextureUse::colour);
+        }
+        roughness(m.border.u_roughness, m.border.v_roughness);
+    }
     void operator()(DiffuseTransmissionMaterial& m) {
         texture("reflectance", m.reflectance, TextureUse::share);
         texture("transmittance", m.transmittance, TextureUse::share);
@@ -161,17 +173,10 @@ struct MaterialSlots {
     void operator()(UnlitMaterial& m) { texture("colour", m.colour, TextureUse::colour); }
 };
 
-constexpr std::array<const char*, 11> kMaterialKinds{"diffuse",
-                                                     "conductor",
-                                                     "dielectric",
-                                                     "coateddiffuse",
-                                                     "diffusetransmission",
-                                                     "coatedconductor",
-                                                     "thindielectric",
-                                                     "interface",
-                                                     "measured",
-                                                     "unlit",
-                                                     "hair"};
+/// Names of the models, in the order of MaterialDescription's variant.
+constexpr auto kMaterialKinds = std::to_array<const char*>(
+    {"diffuse", "conductor", "dielectric", "coateddiffuse", "diffusetransmission",
+     "coatedconductor", "thindielectric", "interface", "measured", "unlit", "hair", "subsurface"});
 
 std::vector<Slot> slots_of(SceneDescription& scene, MaterialDescription& m) {
     std::vector<Slot> slots;

@@ -183,6 +183,7 @@ class MaterialExporter(SumExporter):
         known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled,
                  "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy, "BSDF_ANISOTROPIC": self._glossy, "BSDF_METALLIC": self._metallic,
                  "BSDF_HAIR_PRINCIPLED": self._hair, "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
+                 "SUBSURFACE_SCATTERING": self._subsurface_scattering,
                  "EMISSION": lambda node: self._black(), "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
         if node.type in known:
             return known[node.type](node)

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
-from .emission import EmissionReader, either
+from .emission import either
 from .export_shaders import squared, stretch_of_layers
 from .export_sockets import Value
+from .export_subsurface import SubsurfaceExporter
 
 
 def eta_of_reflectance(reflectance):
@@ -29,7 +30,7 @@ def is_white(value):
 
 # Features of Principled that are left out: names of the socket, and the value at which it changes
 # nothing.
-LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen",), 0), (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0),
+LEFT_OUT = ((("Sheen",), 0), (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0),
             (("Thin Wall",), 0), (("Transmission Dispersion Scale",), 0))
 
 
@@ -38,7 +39,7 @@ def is_colour(socket):
     return hasattr(socket.default_value, "__len__")
 
 
-class PrincipledExporter(EmissionReader):
+class PrincipledExporter(SubsurfaceExporter):
     """Writes the materials that a node Principled stands for."""
 
     def _tell_left_out(self, inputs):
@@ -89,22 +90,55 @@ class PrincipledExporter(EmissionReader):
         """A Value of colour: the tint of what dielectrics reflect at the normal, and of metals' edges."""
         return self._value(inputs["Specular Tint"]) if is_colour(inputs["Specular Tint"]) else WHITE
 
-    def _diffuse_under_specular(self, node, base, roughness, rest, stretch):
+    def _border(self, node, roughness, stretch):
+        """Parameters of the specular border over what is diffuse."""
         reflectance, tint = self._reflectance(node.inputs), self._specular_tint(node.inputs)
         if is_white(tint):
             shape = self._scattering(node)
         else:
             shape = [self._colour("normalreflectance", tint, lambda t: t * reflectance, ("normal", reflectance))]
-        return self._make("coateddiffuse", [
-            self._colour("reflectance", base), *self._roughness(roughness, stretch),
-            f'"float eta" {max(eta_of_reflectance(reflectance), 1.0001):.9g}', '"bool reflectsthroughcoat" true', *shape, *rest])
+        return [*self._roughness(roughness, stretch), f'"float eta" {max(eta_of_reflectance(reflectance), 1.0001):.9g}', *shape]
+
+    def _under_specular(self, node, base, roughness, layers, stretch):
+        """The diffuse surface under specular or, where light is scattered below it, the body. layers: parameters of those
+        over all of it."""
+        border, turned = self._border(node, roughness, stretch), self._normal_map(node)
+
+        def diffuse():
+            return self._make("coateddiffuse", [self._colour("reflectance", base), *border, '"bool reflectsthroughcoat" true',
+                                                *turned, *layers])
+
+        get = node.inputs
+        weight = self._value(either(get, "Subsurface Weight", "Subsurface"), True)
+        if not weight.image and weight.constant <= 0:
+            return diffuse()
+        if layers:
+            self.warn(f"material '{self.name}': Principled's coat and sheen are left out where light is scattered below the surface")
+        scale = self._plain(get["Subsurface Scale"]) if "Subsurface Scale" in get else 1.0
+        colour = base
+        if "Subsurface Color" in get:
+            # Before Blender 4.0 the weight mixes colours and scales the radius, and all light that enters is scattered below.
+            share = min(self._plain(get["Subsurface"]), 1.0)
+            scale *= share
+            colour = self._mixed_colours(base, self._value(get["Subsurface Color"]), share)
+            weight = Value(1.0)
+        body = self._body(node, node.subsurface_method, colour, get["Subsurface Radius"], scale,
+                          eta_of_reflectance(self._reflectance(get)), [*border, *turned])
+        return body if not weight.image and weight.constant >= 1 else self._mix(diffuse(), body, weight)
+
+    def _mixed_colours(self, first, second, share):
+        """Share `share` of the second Value of colour; of images one alone, the one of which there is more."""
+        if first.image or second.image:
+            return second if share >= 0.5 else first
+        return Value(tuple(a + share * (b - a) for a, b in zip(first.constant, second.constant)))
 
     def _principled(self, node):
         get = node.inputs
         base, roughness = self._value(get["Base Color"]), self._value(get["Roughness"], True)
         metallic = self._value(get["Metallic"], True)
         transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
-        rest = self._normal_map(node) + self._sheen(get) + self._coat(get)
+        layers = self._sheen(get) + self._coat(get)
+        rest = self._normal_map(node) + layers
         self._tell_left_out(get)
         stretch = self._stretch(node, "Anisotropic", "Anisotropic Rotation", stretch_of_layers)
 
@@ -124,7 +158,7 @@ class PrincipledExporter(EmissionReader):
             if is_constant(transmission, 1):
                 parts.append(glass())
             else:
-                coated = self._diffuse_under_specular(node, base, roughness, rest, stretch)
+                coated = self._under_specular(node, base, roughness, layers, stretch)
                 if not is_constant(transmission, 0):
                     coated = self._mix(coated, glass(), transmission)
                 parts.append(coated)

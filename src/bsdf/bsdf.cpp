@@ -138,6 +138,7 @@ bool has_diffuse_lobe(const Bsdf& bsdf) {
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf)) return measured->brdf->is_wide();
     if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
         return !is_black(layered->sheen.colour) || has_diffuse_lobe(base_of(*layered));
+    if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf)) return body->is_left;
     return std::holds_alternative<DiffuseBsdf>(bsdf) ||
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
@@ -147,6 +148,7 @@ bool has_sharp_lobe(const Bsdf& bsdf) {
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf)) return !measured->brdf->is_wide();
     if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
         return layered->coat.weight > 0 || has_sharp_lobe(base_of(*layered));
+    if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf)) return !body->is_left;
     return std::holds_alternative<ConductorBsdf>(bsdf) ||
            std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
            std::holds_alternative<DielectricBsdf>(bsdf) ||
@@ -159,6 +161,8 @@ float sharp_lobe_roughness(const Bsdf& bsdf) {
         return std::max(larger(coated->coat), larger(coated->metal));
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf); measured && has_sharp_lobe(bsdf))
         return measured->brdf->alpha();
+    if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf))
+        return body->is_left ? std::numeric_limits<float>::infinity() : larger(body->border);
     if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf)) {
         const float base = sharp_lobe_roughness(base_of(*layered));
         if (!(layered->coat.weight > 0)) return base;

@@ -127,6 +127,22 @@ struct CoatedDiffuseBsdf {
     /// make_coated_total.
     const CoatTable* white = nullptr;
 };
+/// A body that scatters light below its border: where light arrives at it, and where light that was
+/// scattered inside leaves it. What goes on between is a walk of the path; see subsurface.cpp.
+struct SubsurfaceBsdf {
+    /// Border, total, over a base that has the reflectance of the body.
+    CoatedDiffuseBsdf border;
+    Rgb absorption, scattering;  ///< coefficients inside, per scene unit
+    float g = 0;                 ///< mean cosine of the phase function
+    /// Whether the border reflects inside, and refracts light that leaves; else that leaves evenly
+    /// in all directions.
+    bool refracts = true;
+    /// Share of the light that enters which is refracted, by facets of these widths and of this
+    /// index; the rest goes on inside evenly in all directions.
+    float refracted_share = 1;
+    float facet_eta = 1.5f, facet_alpha_x = 0, facet_alpha_y = 0;
+    bool is_left = false;  ///< whether the light comes from below, where wo then is
+};
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
 };
@@ -198,9 +214,10 @@ struct HairBsdf {
     float tail = 0;   ///< share of that distribution beyond pi, on one side
 };
 
-using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
-                          DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf,
-                          InterfaceBsdf, MeasuredBsdf, UnlitBsdf, LayeredBsdf, HairBsdf>;
+using Bsdf =
+    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
+                 DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf, InterfaceBsdf,
+                 MeasuredBsdf, UnlitBsdf, LayeredBsdf, HairBsdf, SubsurfaceBsdf>;
 
 /// The value f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);

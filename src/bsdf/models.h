@@ -43,6 +43,15 @@ std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lo
 LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 Rgb albedo(const CoatedDiffuseBsdf& b, Vec3 wo);
 
+/// Light that enters is left out of `eval`, as that of a specular lobe is: only a walk through the
+/// body finds what comes out of it. A sample that enters is specular, whatever its direction.
+Rgb eval(const SubsurfaceBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const SubsurfaceBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const SubsurfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const SubsurfaceBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+bool is_specular(const SubsurfaceBsdf& b);
+Rgb albedo(const SubsurfaceBsdf& b, Vec3 wo);
+
 Rgb eval(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& b, Vec3 wo, float u_lobe, Vec2 u);

@@ -30,10 +30,13 @@ bool loses_mirrored_light(const Bsdf& bsdf) {
 const Ray& PathTracer::next_ray() {
     ++(depth_ == 0 ? result_.rays.camera : result_.rays.bounce);
     // Begin the light sampling of the vertex to come; it uses that vertex' second pair of numbers
-    if (draws_ahead_)
-        light_draw_ = scene_.lights.begin_draw(
-            sampler_.pair(static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce + 1));
+    if (draws_ahead_) light_draw_ = scene_.lights.begin_draw(sampler_.pair(pairs_to_come() + 1));
     return ray_;
+}
+
+uint32_t PathTracer::pairs_to_come() const {
+    return body_ ? kBodyPairs + steps_in_bodies_ * kPairsPerBodyStep
+                 : static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce;
 }
 
 void PathTracer::prefetch() {
@@ -41,6 +44,7 @@ void PathTracer::prefetch() {
 }
 
 bool PathTracer::meet(bool found) {
+    if (body_) return cross_body(found);
     const SurfaceHit& hit = hit_;
     // Cross the medium, which may scatter the path before it gets there
     if (medium_ >= 0) {
@@ -159,9 +163,15 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape,
     }
     if (depth_++ == max_depth_) return false;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
-    const auto [u_choice, u_light, u_scatter, u_roulette] = sampler_.next_four_2d();
     // Choose the side that lights are sampled for: the viewer's, or both where light passes through
     const Vec3 normal = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
+    return light_and_scatter(surface, normal, vertex);
+}
+
+bool PathTracer::light_and_scatter(const Surface& surface, Vec3 normal, PathVertex* vertex) {
+    const SurfaceHit& hit = surface.hit;
+    const Bsdf& bsdf = surface.bsdf;
+    const auto [u_choice, u_light, u_scatter, u_roulette] = sampler_.next_four_2d();
     lit_ = {hit.position, normal};
     guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_ ? caustic_guide_.at(hit.position, normal)
                                                            : GuideMixture{};

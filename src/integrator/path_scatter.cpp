@@ -15,7 +15,10 @@ namespace {
 /// (docs/decisions/0086).
 constexpr float kSeenThrough = 0.075f;
 
-RayKind kind_of(LobeKind lobe) {
+RayKind kind_of(const Bsdf& bsdf, LobeKind lobe) {
+    // Light that has walked through a body counts as reflected by it, as in Cycles
+    if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf); body && body->is_left)
+        return RayKind::diffuse;
     if (is_transmission(lobe)) return RayKind::transmission;
     return is_diffuse(lobe) ? RayKind::diffuse : RayKind::glossy;
 }
@@ -79,7 +82,7 @@ PathTracer::ChosenKind PathTracer::choose_kind(const Surface& surface, Vec3 wi_l
     for (size_t i = 0; i < size_t(shares.count); ++i) {
         const LobeShare& lobe = shares.lobes[i];
         for (size_t k = 0; k < kKinds.size(); ++k)
-            if (kind_of(lobe.kind) == kKinds[k]) parts[k] += lobe.value;
+            if (kind_of(surface.bsdf, lobe.kind) == kKinds[k]) parts[k] += lobe.value;
         all += lobe.value;
     }
     const float total = luminance(all);
@@ -116,9 +119,12 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     // Sample the BSDF or the guide
     auto s = sample_direction(surface, u_lobe, u);
     if (!s || is_black(s->weight)) return false;
+    if (const auto* body = std::get_if<SubsurfaceBsdf>(&surface.bsdf);
+        body && !body->is_left && is_transmission(s->lobe))
+        return enter_body(surface, *body, *s, vertex);
     // Choose the kind of ray. A pair of directions that several lobes have is split among them, as
     // it is where the light of a lamp is sampled
-    ray_.kind = kind_of(s->lobe);
+    ray_.kind = kind_of(surface.bsdf, s->lobe);
     const Rgb value = s->weight * s->pdf;
     if (scene_.kinds_differ && !is_specular(s->lobe)) {
         const ChosenKind chosen = choose_kind(surface, s->wi, value, u_kind);

@@ -73,6 +73,9 @@ class PathTracer {
     static constexpr uint32_t kMediumPairs = 1u << 20;
     static constexpr uint32_t kWavelengthPair = (1u << 20) - 1;  ///< of the path's wavelength
     static constexpr uint32_t kMirrorPairs = 1u << 19;  ///< first of two per bounce, for mirrors
+    /// First dimension of the pairs of walks through bodies: for each of the path's steps inside
+    /// those of a vertex, where the walk may leave, then those of the step.
+    static constexpr uint32_t kBodyPairs = 1u << 31, kPairsPerBodyStep = 2 * kPairsPerBounce;
 
     /// A place on a surface with all that scattering there depends on.
     struct Surface {
@@ -110,6 +113,18 @@ class PathTracer {
         int panes = 0;           ///< that the path went through; -1: it met something else
         int mirror = -1;         ///< that the path met; -1: none
         float mirror_share = 0;  ///< probability that light was sampled there by a mirror
+    };
+
+    /// A body that scatters light inside, while the path walks through it.
+    struct Body {
+        Medium medium;
+        MaterialId material = -1;  ///< that the path met
+        MaterialId surface = -1;   ///< of the shape: a mix, or `material`
+        /// Things inside the body, of other materials, that the path is in: they let it pass.
+        int things = 0;
+        float eta = 1;      ///< index inside over that outside; 1: the border does not refract
+        float entered = 0;  ///< largest component of the throughput as the path came in
+        int steps = 0;
     };
 
     /// A kind of ray, and a factor on what is scattered that leaves the part of that kind alone.
@@ -154,6 +169,25 @@ class PathTracer {
     /// factors that refraction and the guide put on it; a survivor's throughput grows accordingly.
     bool survives(float u);
     bool in_view() const { return sharp_so_far_ && sharp_probability_ > 0.5f; }
+
+    /// Number of the first of the pairs that the vertex to come draws.
+    uint32_t pairs_to_come() const;
+    /// Adds direct light at a surface and scatters the path there, by the pairs that are next.
+    /// `normal`: that of the side which light is sampled for; 0 for both. Returns false where the
+    /// path ends.
+    bool light_and_scatter(const Surface& surface, Vec3 normal, PathVertex* vertex);
+
+    // ---- path_subsurface.cpp: walks through bodies that scatter light inside
+    /// Goes into the body below a surface, in the sampled direction.
+    bool enter_body(const Surface& surface, const SubsurfaceBsdf& bsdf, const BsdfSample& s,
+                    PathVertex* vertex);
+    /// Takes a step inside, to a place that scatters or to the border, `found`; returns false where
+    /// the path ends.
+    bool cross_body(bool found);
+    /// Leaves the body at the hit.
+    bool leave_body(const SurfaceHit& hit, const PlacedShape& shape);
+    /// Whether the hit, met from inside, is on the border of the body.
+    bool is_border(const SurfaceHit& hit, const PlacedShape& shape);
 
     // ---- path_light.cpp: light that is found
     void escape();
@@ -256,10 +290,12 @@ class PathTracer {
     float roulette_scale_ = 1;  // takes factors of refraction and guide out of beta_ for roulette
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    int depth_ = 0;       // scattering events so far
-    float glow_ = 0;      // luminance from media since the last vertex, for the record
-    Vec3 camera_origin_;  // start of the path
-    GuideMixture guide_;  // guide to caustics at the current vertex
+    int depth_ = 0;                 // scattering events so far
+    std::optional<Body> body_;      // that the path walks through
+    uint32_t steps_in_bodies_ = 0;  // so far, in all of them
+    float glow_ = 0;                // luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;            // start of the path
+    GuideMixture guide_;            // guide to caustics at the current vertex
     const PathGuideCell* cell_ = nullptr;  // where light comes from there; null: not known
     Departure departure_{{}, {}, {}, 0, 0, -1, -1, 0};
     float mirror_share_ = 0;  // probability of sampling light by a mirror at the current vertex

@@ -52,7 +52,7 @@ struct Builder {
     CoatedDiffuseMaterial coated_diffuse();
     CoatedConductorMaterial coated_conductor();
     DiffuseTransmissionMaterial diffuse_transmission();
-    CoatedDiffuseMaterial subsurface();
+    SubsurfaceMaterial subsurface();
     HairMaterial hair();
 };
 
@@ -186,58 +186,44 @@ DiffuseTransmissionMaterial Builder::diffuse_transmission() {
     return m;
 }
 
-/// Albedo of a semi-infinite medium under diffuse light, by the fit of van de Hulst 1980, "Multiple
-/// Light Scattering", vol. 2; the constants are as in Kulla and Conty, SIGGRAPH course 2017.
-float medium_albedo(float sigma_a, float sigma_s, float g) {
-    const float sigma_t = sigma_a + sigma_s;
-    const float single = sigma_t > 0 ? sigma_s / sigma_t : 0;
-    const float s = std::sqrt(std::max(0.0f, (1 - single) / std::max(1e-6f, 1 - single * g)));
-    return clamp01((1 - s) * (1 - 0.139f * s) / (1 + 1.17f * s));
-}
-
-CoatedDiffuseMaterial Builder::subsurface() {
-    warn(
-        "material \"subsurface\" is not supported; \"coateddiffuse\" of the same colour takes its "
-        "place");
-    CoatedDiffuseMaterial m;
-    roughness(m);
+SubsurfaceMaterial Builder::subsurface() {
+    SubsurfaceMaterial m;
+    m.border.reflects_through_coat = true;
+    roughness(m.border);
+    m.border.eta = constant_index(p, "eta", 1.33f, context);
+    m.scale = p.number("scale", 1);
+    m.g = textures.grey_or_none(p, "g");
+    // The parameters are ours, not pbrt's: the body under Blender's Principled.
+    m.refracts = p.flag("refracts", true);
+    m.refracted_share = clamp01(p.number("refractedshare", 0));
+    m.facet_eta = std::max(1.0f, p.number("faceteta", 1.4f));
+    m.facet_alpha = clamp01(p.number("facetalpha", 1));
+    m.border.normal_reflectance = textures.reflectance_or_none(p, "normalreflectance");
+    if (m.border.normal_reflectance < 0)
+        m.border.multiple_scattering = p.flag("multiplescattering", false);
     // The first of several descriptions counts, as in pbrt: the name, then coefficients, then the
     // reflectance.
     const std::string name = p.text("name");
-    const bool has_coefficients = p.has("sigma_a") || p.has("sigma_s");
-    if (name.empty() && !has_coefficients)
-        m.reflectance = textures.reflectance_or_none(p, "reflectance");
-    // The reflectance is that of all light that gets out, reflections on the inside of the surface
-    // included.
-    m.reflects_through_coat = m.reflectance >= 0;
-    if (m.reflectance < 0) {
-        Rgb a, s;
-        float g = p.number("g", 0);
-        if (!name.empty()) {
-            const std::optional<NamedMedium> medium = named_medium(name);
-            if (!medium)
-                throw Error(ErrorKind::scene, p.where("name", e.where),
-                            unknown_name("medium", name, medium_names()));
-            a = medium->sigma_a;
-            s = medium->sigma_s;
-            g = 0;  // the measured scattering is the reduced one
-        } else {
-            if (has_coefficients && p.has("sigma_a") != p.has("sigma_s"))
-                throw Error(ErrorKind::scene, e.where,
-                            "material \"subsurface\" has one of \"sigma_a\" and \"sigma_s\"; "
-                            "expected both or none");
-            a = textures.mean(textures.unbounded(p, "sigma_a", {0.0011f, 0.0024f, 0.014f}));
-            s = textures.mean(textures.unbounded(p, "sigma_s", {2.55f, 3.21f, 3.77f}));
-        }
-        m.reflectance = textures.constant(
-            {medium_albedo(a.r, s.r, g), medium_albedo(a.g, s.g, g), medium_albedo(a.b, s.b, g)},
-            true);
+    if (!name.empty()) {
+        const std::optional<NamedMedium> medium = named_medium(name);
+        if (!medium)
+            throw Error(ErrorKind::scene, p.where("name", e.where),
+                        unknown_name("medium", name, medium_names()));
+        m.absorption = textures.constant(medium->sigma_a, true);
+        m.scattering = textures.constant(medium->sigma_s, true);
+        m.g = -1;  // the measured scattering is the reduced one
+    } else if (p.has("sigma_a") || p.has("sigma_s") || !p.has("reflectance")) {
+        if (p.has("sigma_a") != p.has("sigma_s"))
+            throw Error(ErrorKind::scene, e.where,
+                        "material \"subsurface\" has one of \"sigma_a\" and \"sigma_s\"; "
+                        "expected both or none");
+        m.absorption = textures.unbounded(p, "sigma_a", {0.0011f, 0.0024f, 0.014f});
+        m.scattering = textures.unbounded(p, "sigma_s", {2.55f, 3.21f, 3.77f});
+    } else {
+        m.border.reflectance = textures.reflectance_or_none(p, "reflectance");
+        m.mean_free_path = textures.unbounded(p, "mfp", Rgb{1});
     }
-    m.thickness = textures.constant(Rgb{0.01f}, false);
-    m.g = textures.constant(Rgb{0}, false);
-    m.albedo = textures.constant(Rgb{0}, true);
-    m.eta = constant_index(p, "eta", 1.33f, context);
-    p.ignore_all();
+    p.ignore({"name", "sigma_a", "sigma_s", "reflectance", "mfp", "g"});
     return m;
 }
 

@@ -3,189 +3,13 @@
 #include <bit>
 #include <utility>
 
-#include "bsdf/hair.h"
-#include "bsdf/multiple_scattering.h"
 #include "core/hash.h"
+#include "shading/material_bsdf.h"
 #include "shading/material_inputs.h"
 #include "shading/material_layers.h"
 
 namespace covtrace {
 namespace {
-
-Rgb sqrt(Rgb c) {
-    return {std::sqrt(c.r), std::sqrt(c.g), std::sqrt(c.b)};
-}
-
-/// A GGX width as pbrt-v4 regularizes it: twice as wide, within limits; wide ones stay.
-float regularized(float alpha) {
-    constexpr float kNarrowest = 0.1f, kWidest = 0.3f;
-    return alpha < kWidest ? std::clamp(2 * alpha, kNarrowest, kWidest) : alpha;
-}
-
-/// Values of a material's textures at one place; `fallback` where the file gives none.
-struct Values {
-    const TextureStore& textures;
-    TexturePoint at;
-    const MaterialColours& colours;
-    const AdaptationTable& adaptation;
-    const ReflectancePowersTable& powers;
-    Lobes lobes = Lobes::as_given;
-    Rgb reflectance() const { return colour(colours.reflectance); }
-    ReflectancePowers powers_of_reflectance() const {
-        const MaterialColour& c = colours.reflectance;
-        return c.texture < 0 ? colours.fixed_powers
-                             : powers(c.scale * textures.eval(c.texture, at));
-    }
-    Rgb transmittance() const { return colour(colours.transmittance); }
-    /// A reflectance or transmittance in [0, 1]; NaN becomes 0, so that a broken texel can't
-    /// spread.
-    Rgb colour(const MaterialColour& c) const {
-        return c.texture < 0 ? c.fixed : adaptation(c.scale * textures.eval(c.texture, at));
-    }
-    Rgb spectrum(TextureId id, float fallback) const {
-        return id < 0 ? Rgb(fallback) : textures.eval(id, at);
-    }
-    float number(TextureId id, float fallback) const {
-        return id < 0 ? fallback : textures.eval_float(id, at);
-    }
-    CoatTint tint(const CoatedDiffuseMaterial& m, const CoatTable* white) const {
-        return {share(spectrum(m.normal_reflectance, sqr((m.eta - 1) / (m.eta + 1)))),
-                share(number(m.coat_weight, 1)), white};
-    }
-    template <typename M>
-    Vec2 alphas(const M& m) const {
-        const Vec2 a =
-            ggx_alphas(number(m.u_roughness, 0), number(m.v_roughness, 0), m.remap_roughness);
-        return lobes == Lobes::regularized ? Vec2{regularized(a.x), regularized(a.y)} : a;
-    }
-};
-
-/// The index to use: where the file's spectrum doesn't reach the given one is 0, for which pbrt
-/// takes 1.
-float refractive_index(float eta) {
-    return eta > 0 ? eta : 1;
-}
-
-using Tables = MaterialTables;
-
-constexpr float kDefaultThickness = 0.01f;
-
-Bsdf make(const DiffuseMaterial&, const Values& v, const Tables&) {
-    return DiffuseBsdf{v.reflectance()};
-}
-
-/// A metal whose light is reflected once.
-ConductorBsdf metal(const ConductorMaterial& m, const Values& v) {
-    const Vec2 alpha = v.alphas(m);
-    if (m.reflectance < 0)
-        return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
-    Rgb r = v.reflectance();
-    if (m.edge != ConductorMaterial::Edge::of_index) {
-        ConductorBsdf b{Rgb(1), Rgb(0), alpha.x, alpha.y};
-        b.schlick = m.edge == ConductorMaterial::Edge::schlick
-                        ? metal_of_edge(r, share(v.spectrum(m.edge_tint, 1)))
-                        : SchlickMetal<Rgb>{r, r, Rgb(0)};
-        return b;
-    }
-    // The metal has eta = 1 and the k that reflects r at normal incidence.
-    constexpr float kMost = 0.9999f;
-    r = {std::min(r.r, kMost), std::min(r.g, kMost), std::min(r.b, kMost)};
-    return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
-}
-
-Bsdf make(const ConductorMaterial& m, const Values& v, const Tables& tables) {
-    const ConductorBsdf b = metal(m, v);
-    return m.multiple_scattering ? with_multiple_scattering(b, *tables.white) : b;
-}
-
-Bsdf make(const DielectricMaterial& m, const Values& v, const Tables& tables) {
-    const Vec2 alpha = v.alphas(m);
-    const DielectricBsdf b{refractive_index(m.eta), alpha.x, alpha.y,
-                           m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
-    return m.multiple_scattering
-               ? with_multiple_scattering(b, *tables.from_outside, *tables.from_inside)
-               : b;
-}
-
-Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables) {
-    const Vec2 alpha = v.alphas(m);
-    if (m.reflects_through_coat) {
-        Rgb reflectance = v.reflectance();
-        if (m.multiple_scattering)
-            return make_coated_total(*tables.coat, reflectance, alpha.x, alpha.y, {}, tables.white);
-        CoatTint tint;
-        if (tables.white) {
-            tint = v.tint(m, tables.white);
-            if (m.coat_dims_base) reflectance *= 1 - max_component(tint.normal_reflectance);
-        }
-        return make_coated_total(*tables.coat, reflectance, alpha.x, alpha.y, tint);
-    }
-    // The number of bounces is half of pbrt's depth, whose walk meets the base at every second of
-    // its steps.
-    return make_coated_diffuse(*tables.coat, v.powers_of_reflectance(), alpha.x, alpha.y,
-                               (m.max_depth + 1) / 2);
-}
-
-Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const Tables&) {
-    return DiffuseTransmissionBsdf{v.reflectance(), v.transmittance()};
-}
-
-Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables& tables) {
-    const Vec2 coat = v.alphas(m);
-    CoatedConductorBsdf b;
-    b.coat = {refractive_index(m.eta), coat.x, coat.y};
-    b.metal = metal(m.conductor, v);
-    b.metal.eta *= 1 / b.coat.eta;
-    b.metal.k *= 1 / b.coat.eta;
-    if (m.conductor.multiple_scattering) b.metal = with_multiple_scattering(b.metal, *tables.white);
-    b.thickness = std::max(0.0f, v.number(m.thickness, kDefaultThickness));
-    // The number of bounces is half of pbrt's depth, whose walk meets the metal at every second of
-    // its steps.
-    b.bounces = std::max(1, (m.max_depth + 1) / 2);
-    b.samples = std::max(1, m.samples);
-    return b;
-}
-
-Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Tables&) {
-    return ThinDielectricBsdf{refractive_index(m.eta),
-                              m.transmittance < 0 ? Rgb(1) : v.transmittance()};
-}
-
-Bsdf make(const InterfaceMaterial&, const Values&, const Tables&) {
-    return InterfaceBsdf{};
-}
-
-Bsdf make(const MeasuredMaterial&, const Values&, const Tables& tables) {
-    return MeasuredBsdf{tables.measured};
-}
-
-Bsdf make(const UnlitMaterial& m, const Values& v, const Tables&) {
-    return UnlitBsdf{v.spectrum(m.colour, 1), m.two_sided};
-}
-
-/// Absorption in a strand, by the first description that is given.
-Rgb hair_absorption(const HairMaterial& m, const Values& v, float beta_n) {
-    const auto at_least_0 = [](float x) { return x > 0 ? x : 0.0f; };
-    if (m.absorption >= 0) {
-        const Rgb a = v.spectrum(m.absorption, 0);
-        return {at_least_0(a.r), at_least_0(a.g), at_least_0(a.b)};
-    }
-    if (m.reflectance >= 0) return absorption_of_reflectance(share(v.reflectance()), beta_n);
-    constexpr float kDefaultEumelanin = 1.3f;
-    if (m.eumelanin < 0 && m.pheomelanin < 0) return absorption_of_pigments(kDefaultEumelanin, 0);
-    return absorption_of_pigments(at_least_0(v.number(m.eumelanin, 0)),
-                                  at_least_0(v.number(m.pheomelanin, 0)));
-}
-
-Bsdf make(const HairMaterial& m, const Values& v, const Tables&) {
-    HairShape shape;
-    shape.beta_m = share(v.number(m.beta_m, shape.beta_m));
-    shape.beta_n = share(v.number(m.beta_n, shape.beta_n));
-    shape.alpha = v.number(m.alpha, shape.alpha);
-    shape.eta = v.number(m.eta, shape.eta);
-    shape.coat = share(v.number(m.coat, shape.coat));
-    return make_hair(shape, hair_absorption(m, v, shape.beta_n));
-}
 
 /// The middle of a texture, where parameters that may not vary are read.
 constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}, {}};
@@ -245,6 +69,11 @@ void MaterialStore::prepare(const CoatedDiffuseMaterial& m, Material& material,
                              "= (0.5, 0.5) is used everywhere"});
 }
 
+void MaterialStore::prepare(const SubsurfaceMaterial& m, Material& material,
+                            const TextureStore& textures) {
+    prepare(m.border, material, textures);
+}
+
 void MaterialStore::prepare(const CoatedConductorMaterial& m, Material& material,
                             const TextureStore& textures) {
     warn_of_gap(m.albedo, "coatedconductor", material.description.where, textures, warnings_);
@@ -288,7 +117,7 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         }
         for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance})
             c->fixed = adaptation(c->fixed);
-        const Values at_middle{textures, kMiddle, material.colours, adaptation_, powers_};
+        const MaterialValues at_middle{textures, kMiddle, material.colours, adaptation_, powers_};
         std::visit([&](const auto& m) { prepare(m, material, textures); }, description.value);
         if (description.sheen) {
             if (!sheen_) sheen_ = std::make_unique<const SheenTable>();
@@ -300,22 +129,13 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         if (description.mix)
             for (MaterialId part : description.mix->materials)
                 material.has_layers = material.has_layers || has_layers(part);
-        std::visit(
-            [&](const auto& m) {
-                material.is_constant = is_constant(description, textures);
-                if (!material.is_constant) return;
-                const auto made = [&](const Values& v) {
-                    Bsdf bsdf = make(m, v, material.tables);
-                    put_under_layers(bsdf, description, textures, v.at, material.tables);
-                    return bsdf;
-                };
-                material.constant = made(at_middle);
-                if (scene.regularizes)
-                    material.constant_regularized =
-                        made({textures, kMiddle, material.colours, adaptation_, powers_,
-                              Lobes::regularized});
-            },
-            description.value);
+        material.is_constant = is_constant(description, textures);
+        if (!material.is_constant) continue;
+        material.constant = make_bsdf(description, at_middle, material.tables);
+        MaterialValues regularized = at_middle;
+        regularized.lobes = Lobes::regularized;
+        if (scene.regularizes)
+            material.constant_regularized = make_bsdf(description, regularized, material.tables);
     }
     if (any_varies) adaptation_ = AdaptationTable(adaptation);
     if (any_varies_below_coat) powers_ = ReflectancePowersTable(adaptation);
@@ -329,10 +149,8 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     if (!material.is_constant) {
         const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng,
                               hit.vertices()};
-        const Values values{textures, at, material.colours, adaptation_, powers_, lobes};
-        found = std::visit([&](const auto& m) { return make(m, values, material.tables); },
-                           material.description.value);
-        put_under_layers(found, material.description, textures, at, material.tables);
+        const MaterialValues values{textures, at, material.colours, adaptation_, powers_, lobes};
+        found = make_bsdf(material.description, values, material.tables);
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
         coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
@@ -365,7 +183,9 @@ bool MaterialStore::turns_frame(MaterialId id) const {
 MaterialTextures MaterialStore::textures(MaterialId id) const {
     if (id < 0) return {};
     const MaterialColours& c = materials_[static_cast<size_t>(id)].colours;
-    return {c.reflectance.texture, c.transmittance.texture};
+    // The light of a body enters it and leaves it
+    const bool is_body = std::holds_alternative<SubsurfaceMaterial>(description(id).value);
+    return {c.reflectance.texture, is_body ? c.reflectance.texture : c.transmittance.texture};
 }
 
 bool MaterialStore::lets_light_pass(MaterialId id) const {

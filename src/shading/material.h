@@ -118,6 +118,7 @@ class MaterialStore {
     };
     /// Makes the tables of a material's model, and warns of what is not rendered as it says.
     void prepare(const CoatedDiffuseMaterial& m, Material& material, const TextureStore& textures);
+    void prepare(const SubsurfaceMaterial& m, Material& material, const TextureStore& textures);
     void prepare(const CoatedConductorMaterial& m, Material& material,
                  const TextureStore& textures);
     void prepare(const ConductorMaterial& m, Material& material, const TextureStore&);

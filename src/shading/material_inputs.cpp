@@ -29,6 +29,10 @@ bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
     return all_constant(
         t, {m.reflectance, m.u_roughness, m.v_roughness, m.normal_reflectance, m.coat_weight});
 }
+bool is_constant(const TextureStore& t, const SubsurfaceMaterial& m) {
+    return is_constant(t, m.border) &&
+           all_constant(t, {m.mean_free_path, m.absorption, m.scattering, m.g});
+}
 bool is_constant(const TextureStore& t, const DiffuseTransmissionMaterial& m) {
     return all_constant(t, {m.reflectance, m.transmittance});
 }
@@ -70,6 +74,9 @@ MaterialColours colours(const DielectricMaterial& m) {
 }
 MaterialColours colours(const CoatedDiffuseMaterial& m) {
     return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
+}
+MaterialColours colours(const SubsurfaceMaterial& m) {
+    return colours(m.border);
 }
 MaterialColours colours(const DiffuseTransmissionMaterial& m) {
     const Rgb otherwise = m.scale * Rgb(kDefaultTransmission);

@@ -19,6 +19,14 @@ inline Rgb share(Rgb c) {
     return {share(c.r), share(c.g), share(c.b)};
 }
 
+/// A coefficient, which is not negative; NaN becomes 0.
+inline float at_least_0(float v) {
+    return v > 0 ? v : 0;
+}
+inline Rgb at_least_0(Rgb c) {
+    return {at_least_0(c.r), at_least_0(c.g), at_least_0(c.b)};
+}
+
 /// Whether no texture of the material's model and layers varies.
 bool is_constant(const MaterialDescription& m, const TextureStore& textures);
 /// The colours of the material's model as the scene gives them; `fixed` where it gives none.

@@ -21,7 +21,7 @@ TRIANGLE = {
 }
 FILES = {
     "plain.pbrt": TINY,
-    "milk.pbrt": TINY + 'Material "subsurface"\nShape "sphere"\n',
+    "tube.pbrt": TINY + 'Shape "cylinder"\n',
     "unknown.pbrt": TINY + 'Shape "spehre"\n',
     "old.pbrt": TINY + 'Material "matte"\n',
     "part.pbrt": TINY + 'Include "missing.pbrt" # "comment.ply"\n',
@@ -35,7 +35,7 @@ FILES = {
 }
 EXPECTED = {
     "plain.pbrt": "native",
-    "milk.pbrt": "replaced",
+    "tube.pbrt": "replaced",
     "unknown.pbrt": "refused",
     "old.pbrt": "other version",
     "part.pbrt": "incomplete",
@@ -70,12 +70,12 @@ class Corpus(CliTest):
         code, found, errors, text = self.open_all(EXPECTED, "--bar", "pbrt=3,30", "--bar", "gltf=2,50", "--render")
         self.assertEqual(EXPECTED, {path: row["outcome"] for path, row in found.items()}, text)
         self.assertEqual(["ACME_gizmo"], found["required.gltf"]["reasons"])
-        self.assertIn('material "subsurface" is not supported', found["milk.pbrt"]["reasons"][0])
+        self.assertIn('shape "cylinder" is rendered as a mesh', found["tube.pbrt"]["reasons"][0])
         self.assertIn("no camera in the file", found["whole.gltf"]["told"])
         self.assertEqual((1, "pbrt: 1 refused; expected none but for extensions\n"), (code, errors))
 
     def test_bars(self):
-        good = ["plain.pbrt", "milk.pbrt", "whole.gltf", "required.gltf", "faulty.gltf"]
+        good = ["plain.pbrt", "tube.pbrt", "whole.gltf", "required.gltf", "faulty.gltf"]
         bars = ("--bar", "pbrt=2,50", "--bar", "gltf=2,50")
         self.assertEqual((0, ""), self.open_all(good, *bars)[::2])
         code, _, errors, _ = self.open_all(good, "--bar", "pbrt=3,50", "--bar", "gltf=2,51")

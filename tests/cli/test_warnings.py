@@ -23,7 +23,6 @@ class Warnings(CliTest):
         points = '"point3 P" [0 0 0  0 1 0  0 2 0  0 3 0]'
         sphere = '\nShape "sphere"'
         for directive, fragment in [
-            ('Material "subsurface"' + sphere, "subsurface"),
             ('Material "measured" "string filename" "paint.bsdf"' + sphere, "measured"),
             (f'Shape "curve" {points}', "curve"),
             ('Shape "cylinder"', "cylinder"),

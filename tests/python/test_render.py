@@ -323,7 +323,7 @@ class Errors(unittest.TestCase):
                             covtrace.Scene.from_string(**{"text": scenes.FURNACE, argument: kind})
 
     def test_warnings(self):
-        text = scenes.FURNACE + 'Material "subsurface"\nShape "sphere"\n'
+        text = scenes.FURNACE + 'Shape "cylinder"\n'
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             scene = covtrace.Scene.from_string(text)

@@ -154,7 +154,6 @@ TEST(SceneMaterials, OthersAreReplacedWithOneWarning) {
         EXPECT_TRUE(std::holds_alternative<decltype(expected)>(made.material.value)) << text;
         EXPECT_EQ(made.scene.warnings.size(), 1u) << text << "\n" << warnings_of(made.scene);
     };
-    check("\"subsurface\" \"string name\" \"Skin1\" \"float scale\" 4", CoatedDiffuseMaterial{});
     check("\"measured\" \"string filename\" \"x.bsdf\"", CoatedDiffuseMaterial{});
 }
 
@@ -205,30 +204,35 @@ Shape "sphere"
 }
 
 TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
-    const auto reflectance = [](const std::string& text) {
+    struct Body {
+        SubsurfaceMaterial material;
+        Rgb absorption, reflectance;
+    };
+    const auto body = [](const std::string& text) {
         const auto made = material_of("\"subsurface\" " + text);
-        return constant_value(made.scene,
-                              std::get<CoatedDiffuseMaterial>(made.material.value).reflectance);
+        EXPECT_TRUE(made.scene.warnings.empty()) << warnings_of(made.scene);
+        const auto& m = std::get<SubsurfaceMaterial>(made.material.value);
+        EXPECT_TRUE(m.border.reflects_through_coat);
+        const auto value = [&](TextureId id) {
+            return id < 0 ? Rgb(-1) : constant_value(made.scene, id);
+        };
+        return Body{m, value(m.absorption), value(m.border.reflectance)};
     };
     const std::string ketchup =
         "\"rgb sigma_a\" [ .061 .97 1.45 ] \"rgb sigma_s\" [ .18 .07 .03 ] ";
-    const std::string green = "\"rgb reflectance\" [ 0 1 0 ] ";
+    const std::string green = "\"rgb reflectance\" [ 0 1 0 ] \"rgb mfp\" [ 2 2 2 ] ";
     const std::string cream = "\"string name\" \"Cream\" ";
-    // A reflectance includes the light that is reflected inside; a colour made of coefficients does
-    // not.
-    for (const auto& [text, whole] : {std::pair{green, true}, {cream, false}, {ketchup, false}})
-        EXPECT_EQ(
-            std::get<CoatedDiffuseMaterial>(material_of("\"subsurface\" " + text).material.value)
-                .reflects_through_coat,
-            whole)
-            << text;
-    const Rgb red = reflectance(ketchup);
-    expect_near(reflectance("\"string name\" \"Ketchup\" \"float g\" .8"), red, 1e-6f);
-    EXPECT_GT(red.r, 5 * red.g);
-    expect_near(reflectance(ketchup + green), red, 0);
-    expect_near(reflectance(cream + ketchup + green), reflectance(cream), 0);
-    EXPECT_GT(reflectance(cream).b, 0.5f);
-    expect_near(reflectance(green), {0, 1, 0}, 0);
+    expect_near(body(ketchup + green + "\"float scale\" 4").absorption, {.061f, .97f, 1.45f}, 0);
+    EXPECT_EQ(body(ketchup + "\"float scale\" 4").material.scale, 4);
+    expect_near(body("\"string name\" \"Ketchup\" \"float g\" .8").absorption, {.061f, .97f, 1.45f},
+                1e-6f);
+    EXPECT_LT(body(cream + ketchup + green).absorption.b, 0.1f);
+    EXPECT_LT(body(ketchup + green).material.border.reflectance, 0);
+    expect_near(body(green).reflectance, {0, 1, 0}, 0);
+    EXPECT_LT(body(green).material.absorption, 0);
+    // Without any description the body is marble, as in pbrt
+    expect_near(body("").absorption, {0.0011f, 0.0024f, 0.014f}, 1e-6f);
+    EXPECT_EQ(body("").material.border.eta, 1.33f);
     EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"string name\" \"Ketchip\""),
                          "did you mean \"Ketchup\""));
     EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"rgb sigma_a\" [ 1 1 1 ]"),

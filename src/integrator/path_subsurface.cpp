@@ -1,0 +1,115 @@
+/// A path's walk through a body that scatters light inside, from where it enters to where it
+/// leaves: a random walk through the body's medium, as in Chiang, Kutz and Burley 2016, "Practical
+/// and controllable subsurface scattering for production path tracing". Lights are sampled where it
+/// leaves, not on the way, where the border is between. The walk counts as one scattering event.
+#include <cmath>
+
+#include "bsdf/fresnel.h"
+#include "integrator/path_tracer.h"
+#include "shading/phase_function.h"
+
+namespace covtrace {
+
+bool PathTracer::enter_body(const Surface& surface, const SubsurfaceBsdf& bsdf, const BsdfSample& s,
+                            PathVertex* vertex) {
+    const SurfaceHit& hit = surface.hit;
+    const Vec3 wi = normalize(surface.frame.to_world(s.wi));
+    beta_ *= s.weight;
+    colourless_beta_ *= s.weight;
+    specular_ = sharp_so_far_ = seen_clearly_ = false;
+    if (vertex) {
+        vertex->scatters = true;
+        vertex->next_event.wi = wi;
+        vertex->next_event.lobes.count = 1;
+        vertex->next_event.lobes.lobes[0] = {LobeKind::diffuse_transmission, s.weight};
+    }
+    const MaterialId surface_material = surface.shape.description.material;
+    body_ = Body{{bsdf.absorption, bsdf.scattering, {}, bsdf.g},
+                 scene_.materials.at(surface_material, hit, scene_.textures).id,
+                 surface_material,
+                 0,
+                 bsdf.refracts ? bsdf.border.eta : 1,
+                 max_component(beta_),
+                 0};
+    ray_.origin = Geometry::offset_origin(hit, wi);
+    ray_.direction = wi;
+    ray_.t_max = kInfinity;
+    ray_.kind = RayKind::any;
+    return true;
+}
+
+bool PathTracer::cross_body(bool found) {
+    // Throughput over that of the way in below which a walk may end at random. Beyond the long
+    // walk, which one of a hundred exceeds in a white half space that absorbs nothing, it goes on
+    // for a thousand steps in the mean.
+    constexpr float kFaint = 0.25f, kLeastEnd = 0.001f;
+    constexpr int kLongWalk = 4096;
+    sampler_.set_dimension(pairs_to_come() + kPairsPerBounce);
+    const auto [u_distance, u_direction, u_border, u_roulette] = sampler_.next_four_2d();
+    // Sample the distance at which the medium scatters
+    const MediumEvent event =
+        sample_event(body_->medium, found ? hit_.t : kInfinity, beta_, u_distance);
+    beta_ *= event.weight;
+    colourless_beta_ *= event.weight;
+    if (is_black(beta_) || (!event.scatters && !found)) return false;
+    if (!event.scatters) {
+        const PlacedShape& shape = scene_.geometry.shapes()[hit_.shape];
+        const Vec3 outside = face_forward(hit_.ng, ray_.direction);
+        const float cosine = dot(outside, ray_.direction);
+        if (is_border(hit_, shape)) {
+            if (u_border.x >= fresnel_dielectric(cosine, 1 / body_->eta).reflectance)
+                return leave_body(hit_, shape);
+            ray_.direction = normalize(ray_.direction - outside * (2 * cosine));
+        }
+        ray_.origin = Geometry::offset_origin(hit_, ray_.direction);
+    } else {
+        ray_.origin += ray_.direction * event.distance;
+        ray_.direction = sample_phase(body_->medium.g, -ray_.direction, u_direction);
+    }
+    ++steps_in_bodies_;
+    // End long walks at random
+    const float carried = max_component(beta_) / (kFaint * body_->entered);
+    const float end = std::max(++body_->steps > kLongWalk ? kLeastEnd : 0.0f, 1 - carried);
+    if (u_roulette.x < end) return false;
+    if (end > 0) {
+        beta_ *= 1 / (1 - end);
+        colourless_beta_ *= 1 / (1 - end);
+    }
+    return true;
+}
+
+bool PathTracer::is_border(const SurfaceHit& hit, const PlacedShape& shape) {
+    if (shape.description.material == body_->surface) return true;
+    // Parts of one mesh may have other materials than the body; things inside of it are entered
+    // before they are left
+    if (dot(hit.ng, ray_.direction) < 0) {
+        ++body_->things;
+        return false;
+    }
+    return body_->things == 0 || (--body_->things, false);
+}
+
+bool PathTracer::leave_body(const SurfaceHit& hit, const PlacedShape& shape) {
+    const Vec3 from = ray_.direction;
+    const MaterialId material = body_->material;
+    Bsdf bsdf = bsdf_at(hit, material);
+    std::get<SubsurfaceBsdf>(bsdf).is_left = true;
+    // Let the path seem to come straight from where it entered, wherever it has been
+    const Vec3 back = lit_.position - hit.position;
+    const float way = length(back);
+    PathVertex* vertex = begin_vertex(hit, -1, way > 0 ? back / way : -from);
+    const Frame frame = frame_at(hit, shape, material);
+    const bool is_outside = dot(frame.z, face_forward(hit.ng, from)) > 0;
+    if (vertex) {
+        vertex->material = material;
+        vertex->shading = frame;
+    }
+    sampler_.set_dimension(pairs_to_come());
+    ++steps_in_bodies_;
+    body_.reset();
+    ray_begin_ = hit.position;
+    return light_and_scatter({hit, shape, bsdf, frame, {0, 0, is_outside ? -1.0f : 1.0f}},
+                             is_outside ? frame.z : -frame.z, vertex);
+}
+
+}  // namespace covtrace
