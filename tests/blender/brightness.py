@@ -16,6 +16,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import addon_support
+import test_subsurface
 
 SAMPLES = 64
 WHITE, GREY, BLACK, GOLD = (1, 1, 1, 1), (0.5, 0.5, 0.5, 1), (0, 0, 0, 1), (1, 0.6, 0.2, 1)
@@ -35,11 +36,11 @@ def cells(channel=0):
     return f"{ours:.3f} | {theirs:.3f} | {ours / theirs:.3f}"
 
 
-def row(name, channel=0, **inputs):
+def row(name, channel=0, make=addon_support.material, **inputs):
     found = []
     for tilt in (0, 1.2):
         test = white_surrounding(200)
-        test.plane(addon_support.material(**inputs))
+        test.plane(make(**inputs))
         test.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
         test.camera.rotation_euler = (tilt, 0, 0)
         found.append(cells(channel))
@@ -67,6 +68,18 @@ def multiscatter_rows():
         yield glass_row(roughness)
 
 
+def body_rows():
+    """Rows of wide bodies, and of plates, whose red comes through."""
+    for method in ("RANDOM_WALK", "RANDOM_WALK_SKIN"):
+        for name, colour in (("0.5", GREY), ("0.95", (0.95, 0.95, 0.95, 1))):
+            yield row(f"body {name}, {method}", make=test_subsurface.body, colour=colour, scale=0.02, method=method, Roughness=0.4)
+        test = test_subsurface.SubsurfaceTest()
+        test.setUp()
+        test.slab(test_subsurface.body(scale=0.5, method=method, Specular=0.0))
+        ours, theirs = test.centres()
+        yield f"| plate, {method} | {ours[0]:.3f} | {theirs[0]:.3f} | {ours[0] / theirs[0]:.3f} |"
+
+
 def main():
     rows = [row("base 0.5, no specular, roughness 1", Base_Color=GREY, Specular=0.0, Roughness=1.0),
             row("base 0.5, no specular, roughness 0.3", Base_Color=GREY, Specular=0.0, Roughness=0.3),
@@ -83,6 +96,7 @@ def main():
     print("\n".join(rows))
     if bpy.app.version >= (4, 0, 0):
         print("\n".join(multiscatter_rows()))
+    print("\n".join(body_rows()))
 
 
 main()
