@@ -1,5 +1,6 @@
 """Blender's evaluated meshes as triangles, one part per material."""
 
+import bpy
 import numpy as np
 
 
@@ -86,8 +87,9 @@ def loop_normals(mesh):
     """(n, 3) of the corners of faces, for smooth ones as Cycles has them."""
     if hasattr(mesh, "calc_normals_split"):  # from Blender 4.1 on they are there
         mesh.calc_normals_split()
-    elif not mesh.has_custom_normals and not _has_sharp_edges(mesh):
-        # Blender's own are cut where a smooth face meets a flat one, in Cycles all faces of a vertex have a part in its normal.
+    elif bpy.app.version < (5, 1, 0) and not mesh.has_custom_normals and not _has_sharp_edges(mesh):
+        # Blender's own are cut where a smooth face meets a flat one, in Cycles before 5.1 all faces of a vertex have a part in its
+        # normal.
         normals, vertices = np.empty(3 * len(mesh.vertices), np.float32), np.empty(len(mesh.loops), np.int32)
         mesh.vertex_normals.foreach_get("vector", normals)
         mesh.loops.foreach_get("vertex_index", vertices)

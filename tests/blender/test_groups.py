@@ -1,5 +1,7 @@
 """Groups of nodes, muted nodes and links, and reroutes of materials, against Cycles."""
 
+import itertools
+
 import bpy
 from addon_support import BlenderTest, material, mean, render, socket
 from node_trees import Tree
@@ -106,7 +108,7 @@ class GroupsTest(BlenderTest):
 
     def test_sockets_on_the_way_convert_as_in_cycles(self):
         """A colour that passes sockets of other types, of groups and of a muted node."""
-        for kind, name in (("Float", "Color"), ("Vector", "Strength"), ("Muted", "Color")):
+        for kind, name in itertools.product(("Float", "Vector", "Muted"), ("Color", "Strength")):
             m, shader, source = self.shining_material()
             tree = m.node_tree
             if kind == "Muted":
@@ -116,28 +118,45 @@ class GroupsTest(BlenderTest):
                 node = self.group_node(tree, kind)
             tree.links.new(source.outputs[0], node.inputs[0])
             tree.links.new(node.outputs[0], shader.inputs[name])
-            with self.subTest(kind):
+            with self.subTest(kind, name=name):
                 self.assert_shines_as_cycles(m)
 
     def test_ends_without_a_node_are_as_in_cycles(self):
-        """A reroute and a muted group that nothing feeds are zero, a group input of the outermost tree is as no link."""
-        for kind in ("reroute", "muted", "outermost"):
+        """A reroute and muted nodes that nothing feeds, a reroute inside of a group, and a group input of the outermost tree: zero or as no
+        link, by the version of Blender."""
+        for kind, name in itertools.product(("reroute", "muted", "number", "source", "twice", "inside", "outermost"), ("Color", "Strength")):
             m, shader, _ = self.shining_material()
             tree = m.node_tree
-            shader.inputs["Color"].default_value = (0.3, 0.2, 0.6, 1)
+            shader.inputs["Color"].default_value, shader.inputs["Strength"].default_value = (0.3, 0.2, 0.6, 1), 1.5
             if kind == "reroute":
                 node = tree.nodes.new("NodeReroute")
             elif kind == "muted":
                 node = self.group_node(tree, "Color")
                 node.mute, node.inputs[0].default_value = True, (0.9, 0.9, 0.9, 1)
+            elif kind == "number":
+                node = tree.nodes.new("ShaderNodeMath")
+                node.mute, node.inputs[0].default_value = True, 0.8
+            elif kind == "source":
+                node = tree.nodes.new("ShaderNodeRGB")
+                node.mute, node.outputs[0].default_value = True, (0.9, 0.8, 0.7, 1)
+            elif kind == "twice":
+                first, node = tree.nodes.new("ShaderNodeGamma"), tree.nodes.new("NodeReroute")
+                first.mute, first.inputs[0].default_value = True, (0.9, 0.8, 0.7, 1)
+                tree.links.new(first.outputs[0], node.inputs[0])
+            elif kind == "inside":
+                node = self.group_node(tree, "Color")
+                inner = node.node_tree
+                end = next(n for n in inner.nodes if n.type == "GROUP_OUTPUT")
+                end.inputs[0].default_value = (0.9, 0.8, 0.7, 1)
+                inner.links.new(inner.nodes.new("NodeReroute").outputs[0], end.inputs[0])
             else:
                 if hasattr(tree, "interface"):
                     tree.interface.new_socket("Passed", in_out="INPUT", socket_type="NodeSocketColor")
                 else:
                     tree.inputs.new("NodeSocketColor", "Passed")
                 node = tree.nodes.new("NodeGroupInput")
-            tree.links.new(node.outputs[0], shader.inputs["Color"])
-            with self.subTest(kind):
+            tree.links.new(node.outputs[0], shader.inputs[name])
+            with self.subTest(kind, name=name):
                 self.assert_shines_as_cycles(m)
 
     def test_the_output_may_be_in_a_group(self):

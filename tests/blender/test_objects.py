@@ -140,8 +140,8 @@ class ObjectsTest(BlenderTest):
         self.assert_silhouettes_as_cycles()
 
     def test_hair_is_as_bright_as_in_cycles(self):
-        matt = bpy.data.materials.new("matt")
-        matt.use_nodes, matt.diffuse_color = False, (0.9, 0.9, 0.9, 1)
+        matt = self.black()
+        matt.node_tree.nodes["Diffuse BSDF"].inputs["Color"].default_value = (0.9, 0.9, 0.9, 1)
         sheet = self.plane(matt, size=3)
         sheet.modifiers.new("hair", "PARTICLE_SYSTEM")
         settings = sheet.particle_systems[0].settings

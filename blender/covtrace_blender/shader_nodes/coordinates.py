@@ -68,11 +68,12 @@ def attribute_of(node):
 def _attribute(node, output, inputs):
     if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY":
         raise Unsupported(node, f"attributes of its type {node.attribute_type.lower()} have no counterpart")
-    part = {"Fac": "NUMBER", "Alpha": "ALPHA"}.get(output.name, "ATTRIBUTE")
+    # Blender 5.3 calls Fac Factor, and has kept its identifier.
+    part = {"Fac": "NUMBER", "Alpha": "ALPHA"}.get(output.identifier, "ATTRIBUTE")
     # As in Cycles: Attribute takes what a mesh has not for a number, which is opaque.
     missing = 1.0 if part == "ALPHA" and node.type == "ATTRIBUTE" else 0.0
     found = inputs.place.attribute(node, attribute_of(node), part, missing)
-    return found.mean(axis=-1) if output.name in ("Fac", "Alpha") else found
+    return found if part == "ATTRIBUTE" else found.mean(axis=-1)
 
 
 def _object_info(node, output, inputs):

@@ -1,5 +1,6 @@
 """Trees of nodes as they are without groups, reroutes and muted nodes: each node sees what really feeds it."""
 
+import bpy
 import numpy as np
 
 from ..working_space import luminance
@@ -122,17 +123,45 @@ class FlatSocket:
         return _as_type_of(own, end) if end else _zero(own)
 
     def _source(self):
-        """(_Link or None, the socket whose default value counts without one, None for zero). Reroutes, muted nodes and groups without
-        an output that nothing feeds are zero, as in Cycles."""
+        """(_Link or None, the socket whose default value counts without one, None for zero)."""
+        return self._source_since_5() if bpy.app.version >= (5, 0, 0) else self._source_before_5()
+
+    def _source_since_5(self):
+        """Sockets of groups convert constants alone, and a link from a reroute or a muted node that nothing feeds is none; groups without
+        an output and group inputs of the outermost tree are zero."""
+        groups = self.node.groups
+        link = _used_link(self._socket)
+        while link and _passes(link.from_node):
+            node, output = link.from_node, link.from_socket
+            socket = node.inputs[0] if node.type == "REROUTE" else _passed_on(node, output)
+            link = socket and _used_link(socket)
+        if not link:
+            return None, self._socket
+        node, output = link.from_node, link.from_socket
+        if node.type == "GROUP":
+            socket, groups = _output_inside(node.node_tree, output.identifier), (*groups, node)
+        elif node.type == "GROUP_INPUT":
+            socket, groups = groups and _input_of(groups[-1], output.identifier), groups[:-1]
+        else:
+            found = FlatNode(node, self.node.tree, groups)
+            return _Link(found, FlatSocket(output, found)), None
+        if not socket:
+            return None, None
+        passed = FlatSocket(socket, FlatNode(socket.node, self.node.tree, groups))
+        found, end = passed._source()
+        return found, end and passed
+
+    def _source_before_5(self):
+        """Sockets on the way convert, as in Cycles; reroutes, muted nodes and groups without an output that nothing feeds are zero."""
         socket, groups = self._socket, self.node.groups
-        if not socket.is_linked:  # Blender looks through all links of a tree for those of one socket
+        if not socket.is_linked:
             return None, socket
-        while link := next((k for k in socket.links if k.is_valid and not k.is_muted), None):
+        while link := _used_link(socket):
             node, output = link.from_node, link.from_socket
             if node.type == "REROUTE":
                 socket = node.inputs[0]
             elif node.mute:
-                socket = next((k.from_socket for k in node.internal_links if k.to_socket == output), self._socket)
+                socket = _passed_on(node, output) or self._socket
                 if socket != self._socket and "VALUE" in (_kind(socket), _kind(output)) and _kind(socket) != _kind(output):
                     muted = FlatNode(node, self.node.tree, groups)
                     return _Link(Conversion(FlatSocket(socket, muted)), FlatSocket(output, muted)), None
@@ -141,7 +170,7 @@ class FlatSocket:
             elif node.type == "GROUP_INPUT":
                 # The outermost tree has none: nothing feeds its group inputs.
                 group, groups = (groups[-1], groups[:-1]) if groups else (None, ())
-                socket = next((s for s in group.inputs if s.identifier == output.identifier), None) if group else self._socket
+                socket = _input_of(group, output.identifier) if group else self._socket
             else:
                 found = FlatNode(node, self.node.tree, groups)
                 return _Link(found, FlatSocket(output, found)), None
@@ -149,18 +178,39 @@ class FlatSocket:
                 break
             if _kind(socket) != _kind(self._socket):
                 return self._converted(FlatSocket(socket, FlatNode(socket.node, self.node.tree, groups)))
-        is_zero = socket is None or socket != self._socket and (socket.node.type == "REROUTE" or socket.node.mute)
+        is_zero = socket is None or socket != self._socket and _passes(socket.node)
         return None, None if is_zero else self._socket if socket == self._socket else socket
 
     def _converted(self, passed):
         """The _source through a socket of another type."""
         link, end = passed._source()
         if link is None:
-            return None, end and passed
+            return None, None if end is passed._socket and _passes(passed.node) else end and passed
         own, between, first = (_kind(socket) for socket in (self, passed, link.from_socket))
         is_narrow = between == "VALUE" and "VALUE" not in (own, first)
         is_weighed = own == "VALUE" and "VALUE" not in (between, first) and between != first
         return _Link(Conversion(passed), passed) if is_narrow or is_weighed else link, None
+
+
+def _used_link(socket):
+    """The link that feeds an input; None for no such."""
+    # Blender looks through all links of a tree for those of one socket.
+    return next((k for k in socket.links if k.is_valid and not k.is_muted), None) if socket.is_linked else None
+
+
+def _passes(node):
+    """Whether a node only hands on what reaches it."""
+    return node.type == "REROUTE" or node.mute
+
+
+def _passed_on(node, output):
+    """The input that a muted node has in place of an output, or None."""
+    return next((k.from_socket for k in node.internal_links if k.to_socket == output), None)
+
+
+def _input_of(group, identifier):
+    """The input of a group node by its identifier, or None."""
+    return next((socket for socket in group.inputs if socket.identifier == identifier), None)
 
 
 def _kind(socket):
