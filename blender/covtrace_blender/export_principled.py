@@ -2,6 +2,7 @@
 
 import math
 
+import bpy
 import numpy as np
 
 from .emission import either
@@ -71,9 +72,8 @@ class PrincipledExporter(SubsurfaceExporter):
         return [self._colour("sheen", colour),
                 self._number("sheenroughness", self._value(inputs["Sheen Roughness"], True), squared, "squared")]
 
-    def _coat(self, inputs):
-        """Parameters of the clear coat over all but the fibres."""
-        weight = self._value(either(inputs, "Coat Weight", "Clearcoat"), True)
+    def _coat(self, inputs, weight):
+        """Parameters of the clear coat over all but the fibres; weight: a Value."""
         if not weight.image and weight.constant <= 0:
             return []
         if "Clearcoat" in inputs:
@@ -132,14 +132,26 @@ class PrincipledExporter(SubsurfaceExporter):
             return second if share >= 0.5 else first
         return Value(tuple(a + share * (b - a) for a, b in zip(first.constant, second.constant)))
 
+    def _is_mixed_with_uncoated(self, inputs, weight):
+        """Whether a part of the surface has no coat, as in Cycles from 5.3 on; before that all of it has one that is weaker. Without a tint
+        both are the same."""
+        return bpy.app.version >= (5, 3, 0) and (weight.image or 0 < weight.constant < 1) and not is_white(self._value(inputs["Coat Tint"]))
+
     def _principled(self, node):
+        self._tell_left_out(node.inputs)
+        weight = self._value(either(node.inputs, "Coat Weight", "Clearcoat"), True)
+        if not self._is_mixed_with_uncoated(node.inputs, weight):
+            return self._coated(node, weight)
+        return self._mix(self._coated(node, Value(0.0)), self._coated(node, Value(1.0)), weight)
+
+    def _coated(self, node, coat_weight):
+        """The material of a node whose coat has this weight, a Value."""
         get = node.inputs
         base, roughness = self._value(get["Base Color"]), self._value(get["Roughness"], True)
         metallic = self._value(get["Metallic"], True)
         transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
-        layers = self._sheen(get) + self._coat(get)
+        layers = self._sheen(get) + self._coat(get, coat_weight)
         rest = self._normal_map(node) + layers
-        self._tell_left_out(get)
         stretch = self._stretch(node, "Anisotropic", "Anisotropic Rotation", stretch_of_layers)
 
         def is_constant(value, number):

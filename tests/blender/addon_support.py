@@ -120,21 +120,25 @@ class BlenderTest(unittest.TestCase):
             self.assertGreater(b, 1e-3)
             self.assertAlmostEqual(a / b, 1, delta=tolerance, msg=f"channel {channel}: {ours} against {theirs}")
 
-    def assert_as_bright(self, m, tolerance, what, tilts=(0, 0.8, 1.2)):
-        """Asserts that a plane in a white surrounding is as bright as in Cycles, seen from above and aslant, and that nothing is
-        left out. tolerance: of the share that comes back; what: what an error calls it."""
+    def shares(self, m, tilts=(0, 0.8, 1.2), engines=("COVTRACE", "CYCLES")):
+        """Yields (tilt, colours by engine): how bright a plane in a white surrounding is from above and aslant, and exports it."""
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         self.camera.data.lens = 200
         plane = self.plane(m)
         for tilt in tilts:
             self.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
             self.camera.rotation_euler = (tilt, 0, 0)
-            ours, theirs = mean(render("COVTRACE", 64)), mean(render("CYCLES", 64))
+            yield tilt, *(mean(render(engine, 64)) for engine in engines)
+        self.export()
+        bpy.data.objects.remove(plane)
+
+    def assert_as_bright(self, m, tolerance, what, tilts=(0, 0.8, 1.2)):
+        """Asserts that a plane in a white surrounding is as bright as in Cycles, seen from above and aslant, and that nothing is
+        left out. tolerance: of the share that comes back; what: what an error calls it."""
+        for tilt, ours, theirs in self.shares(m, tilts):
             for a, b in zip(ours, theirs):
                 self.assertAlmostEqual(a, b, delta=tolerance, msg=f"{what} at {tilt}: {ours} against {theirs}")
-        self.export()
         self.assertEqual(self.warnings, [])
-        bpy.data.objects.remove(plane)
 
     def centre(self):
         return mean(render("COVTRACE", 64), WIDTH // 2 - 2, HEIGHT // 2 - 2, WIDTH // 2 + 2, HEIGHT // 2 + 2)[0]
