@@ -37,10 +37,10 @@ class BakedImages:
             self._kinds[nodes] = kinds
         return found
 
-    def turned(self, image, body, uv_map, strength):
+    def turned(self, image, body, uv_map, strengths):
         """The BakedImage that body_normals.turned makes, or an earlier one."""
-        key = (image.name_full, body.key(body_normals.kinds(uv_map)), uv_map, strength)
-        found = self._used.get(key) or _known.get(key) or Baked(image=body_normals.turned(image, body, uv_map, strength))
+        key = (image.name_full, body.key(body_normals.kinds(uv_map)), uv_map, strengths)
+        found = self._used.get(key) or _known.get(key) or Baked(image=body_normals.turned(image, body, uv_map, strengths))
         self._used[key] = found
         return found.image
 

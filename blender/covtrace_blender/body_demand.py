@@ -46,9 +46,9 @@ class _Counter:
     def of(self, socket, surface, how, bake):
         return self._once((socket.node.path, socket.identifier, how), bake)
 
-    def turned(self, image, body, uv_map, strength):
+    def turned(self, image, body, uv_map, strengths):
         self.kinds.update(body_normals.kinds(uv_map))
-        return self._once((image.name_full, uv_map, strength), self._image).image
+        return self._once((image.name_full, uv_map, strengths), self._image).image
 
     def bake(self, get, surface, only_unit_square=False):
         place = BodyPlace(_AnyBody, np.arange(PROBES), (0.0, 0.0), self._pixels_of, self.ray, self.owner) if surface.body else \

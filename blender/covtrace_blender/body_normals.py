@@ -25,12 +25,12 @@ def kinds(uv_map):
     return "NORMAL", "OBJECT", uv_map
 
 
-def turned(image, body, uv_map, strength):
+def turned(image, body, uv_map, strengths):
     """A BakedImage of the normals that `image`, a BakedImage over the atlas of `body`, tells in the frame of the UV map `uv_map`, in that of the
-    atlas. strength: Blender's, which blends from the flat normal."""
+    atlas. strengths: of x, y and z, which blend from the flat normal."""
     atlas, texels = body.atlas, body.atlas.texels
     flat = np.array([0, 0, 1])
-    local = flat + (2 * image.values[texels.rows, texels.columns] - 1 - flat) * strength
+    local = flat + (2 * image.values[texels.rows, texels.columns] - 1 - flat) * strengths
     normals = body.values("NORMAL", np.arange(len(texels.triangle)), (0, 0))
     positions = body.corners("OBJECT")
     of_map, of_atlas = (_frame(normals, *(part[texels.triangle] for part in _tangents(positions, uvs)))

@@ -135,31 +135,33 @@ class ShaderWriter(SocketReader):
         if source.type == "NORMAL_MAP" and source.space == "TANGENT":
             value = self._value(source.inputs["Color"], only_unit_square=True)
             strength = self._plain(source.inputs["Strength"])
+            # Maps by the convention of DirectX, which Blender knows since 5.1, have y downwards.
+            strengths = (strength, -strength if getattr(source, "convention", "") == "DIRECTX" else strength, strength)
             if source.uv_map and source.uv_map not in self.uv_maps:
                 self.uv_maps.append(source.uv_map)
             if value.image and not self.surface.body and not value.is_plainly_placed():
                 self._ask_for_body(NeedsBody(source, "a normal map lies on the unit square alone"))
             if value.image and self.surface.body:
-                return self._normals_on_body(value.image, ("UV", source.uv_map), strength)
+                return self._normals_on_body(value.image, ("UV", source.uv_map), strengths)
             if value.image:
                 def scaled(colour):
                     # Cycles blends from the flat normal.
                     flat = np.array([0.5, 0.5, 1.0], dtype=np.float32)
-                    return flat + (colour - flat) * strength
-                file = self.files.write(value.image, ("normal", strength), lambda p: scaled(value.apply(p)))
+                    return flat + (colour - flat) * np.array(strengths, np.float32)
+                file = self.files.write(value.image, ("normal", strengths), lambda p: scaled(value.apply(p)))
                 if not value.is_plainly_placed():
                     self.warn(f"material '{self.name}': a normal map is used as it lies, unscaled and interpolated")
                 return [f'"string normalmap" "{file}"']
         self.warn(f"material '{self.name}': only bumps and tangent space normal maps change normals")
         return []
 
-    def _normals_on_body(self, image, uv_map, strength):
+    def _normals_on_body(self, image, uv_map, strengths):
         """A normal map in the frame of the atlas, of one in the frame of a UV map."""
         body = self.surface.body
         if not body.knows(uv_map):
             self.warn(f"material '{self.name}': a normal map without a UV map is left out")
             return []
-        found = self.baked.turned(image, body, uv_map, strength)
+        found = self.baked.turned(image, body, uv_map, strengths)
         return [f'"string normalmap" "{self.files.write(found, "normals", lambda pixels: pixels[..., :3])}"']
 
     def _bump(self, node):

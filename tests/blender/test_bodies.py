@@ -210,17 +210,22 @@ class BodiesTest(BlenderTest):
         image.pixels = np.dstack((0.5 + 0.15 * np.sin(x), 0.5 + 0.15 * np.cos(y), np.full_like(x, 0.96), np.ones_like(x))).ravel()
         normals = tree.node("NormalMap", {}, {"Color": tree.node("TexImage", {"image": image}, {"Vector": tree.uv()})})
         tree.link(normals, 0, tree.shader.inputs["Normal"])
-        on_body = tree.material.copy()
-        nodes = on_body.node_tree.nodes
-        noise = nodes.new("ShaderNodeTexNoise")
-        noise.inputs["Scale"].default_value = 2
-        on_body.node_tree.links.new(noise.outputs["Color"], nodes[tree.shader.name].inputs["Color"])
-        for material in (tree.material, on_body):
+        places = {"over a UV map": tree.material}
+        if hasattr(normals, "convention"):  # from Blender 5.1 on
+            places["of DirectX"] = tree.material.copy()
+            places["of DirectX"].node_tree.nodes[normals.name].convention = "DIRECTX"
+        for where, material in list(places.items()):
+            on_body = places[f"{where} over a body"] = material.copy()
+            nodes = on_body.node_tree.nodes
+            noise = nodes.new("ShaderNodeTexNoise")
+            noise.inputs["Scale"].default_value = 2
+            on_body.node_tree.links.new(noise.outputs["Color"], nodes[tree.shader.name].inputs["Color"])
+        for material in places.values():
             for scale in (1, -1):
                 self.place(self.sphere(), material, is_smooth=True).scale = (scale, 1, 1)
             for loop in self.place(self.sphere(), material, is_smooth=True).data.uv_layers[0].data:
                 loop.uv = (-2 * loop.uv[0], loop.uv[1])
-        self.assert_bodies([f"{kind} {where}" for where in ("over a UV map", "over a body") for kind in ("plain", "mirrored", "mirrored map")])
+        self.assert_bodies([f"{kind} {where}" for where in places for kind in ("plain", "mirrored", "mirrored map")])
 
     def test_what_is_no_body_is_told_or_left_out(self):
         nothing = self.place(self.cube(), self.texture("Noise"))

@@ -280,7 +280,8 @@ class ShaderNodesTest(BlenderTest):
 
         self.assert_nodes({**{kind: mapped(kind) for kind in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP")},
                            "unclamped": mapped("LINEAR", False), "clamp": clamped,
-                           **{name: vector(name) for name in ("MULTIPLY", "DISTANCE", "NORMALIZE", "FRACTION", "PROJECT")},
+                           **{name: vector(name) for name in ("MULTIPLY", "DISTANCE", "NORMALIZE", "FRACTION", "PROJECT",
+                                                              *(("ROUND",) if bpy.app.version >= (5, 1, 0) else ()))},
                            **{f"mapping {kind}": placed(kind) for kind in ("TEXTURE", "NORMAL")}})
 
     def test_heights_turn_normals(self):

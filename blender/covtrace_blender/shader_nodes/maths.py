@@ -91,7 +91,7 @@ def _reflect(a, b):
 # Those of numbers act on each component; these are further ones.
 VECTOR_OPERATIONS = {
     **{name: OPERATIONS[name] for name in ("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM", "MAXIMUM",
-                                           "FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT")},
+                                           "ROUND", "FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT")},
     "FRACTION": OPERATIONS["FRACT"], "CROSS_PRODUCT": lambda a, b: np.cross(a, b), "PROJECT": _project, "REFLECT": _reflect,
     "DOT_PRODUCT": _dot, "DISTANCE": lambda a, b: _length(a - b), "LENGTH": _length, "NORMALIZE": _normalized,
 }
