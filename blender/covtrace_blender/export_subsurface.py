@@ -30,9 +30,10 @@ def radius_of_skin(colour, eta):
     return np.sqrt(3 * (1 - (least + most) / 2))
 
 
-# Cycles' factor on the radius of the walk that is not for skin, by which it looked as older models did. Blender 5.3 has none,
-# 4.5 has it; those between were not tried.
-OF_FIXED_RADIUS = 0.25 / math.pi if bpy.app.version < (5, 3) else 1.0
+def factor_of_fixed_radius():
+    """Cycles' factor on the radius of the walk that is not for skin, by which it looked as older models did. Blender 5.3 has none,
+    4.5 has it; those between were not tried."""
+    return 0.25 / math.pi if bpy.app.version < (5, 3) else 1.0
 
 
 def is_skin(method):
@@ -80,7 +81,7 @@ class SubsurfaceExporter(EmissionReader):
             scale *= most * widest
         else:
             mean_free_path = self._colour("mfp", free_path) if free_path.image else self._index("mfp", free_path)
-            scale *= OF_FIXED_RADIUS
+            scale *= factor_of_fixed_radius()
         # The radius is that of the light which is scattered evenly: 1 - g times the mean free path.
         return self._make("subsurface", [
             self._colour("reflectance", colour), mean_free_path, f'"float scale" {scale * (1 - g):.9g}', f'"float g" {g:.9g}',
