@@ -42,8 +42,8 @@ void fill_undershoot(std::span<const Candidate> candidates, const Halves& halves
                 float& mixture = s.half[half][k][i];
                 if (keep[i] > 0 || !(mixture < 0)) continue;
                 float darkest = kInfinity;
-                for (size_t c = 0; c < candidates.size(); ++c)
-                    if (const float v = candidates[c][half][k][i]; s.share[c][i] > 0 && v > 0)
+                for (const Candidate& candidate : candidates)
+                    if (const float v = candidate[half][k][i]; v > 0)
                         darkest = std::min(darkest, v);
                 mixture = std::isfinite(darkest) ? darkest : 0;
             }

@@ -23,11 +23,11 @@ Selection mixture_of(const std::vector<Candidate>& c) {
     return s;
 }
 
-TEST(Undershoot, HolesGetTheLightOfTheDarkestCandidateWithAShare) {
+TEST(Undershoot, HolesGetTheLightOfTheDarkestCandidateAboveZero) {
     const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0, 1);
     const std::vector<Candidate> candidates{{constant(0.3f), constant(0.3f)},
                                             {constant(-1), constant(-0.1f)},
-                                            {constant(0.2f), constant(0.2f)}};
+                                            {constant(0.4f), constant(0.2f)}};
     Selection s = mixture_of(candidates);
     fill_undershoot(candidates, halves, s);
     for (size_t k = 0; k < 3; ++k) {
@@ -37,12 +37,22 @@ TEST(Undershoot, HolesGetTheLightOfTheDarkestCandidateWithAShare) {
     EXPECT_FLOAT_EQ(without_undershoot(constant(-1), halves)[1](3, 4), 0);
 }
 
+TEST(Undershoot, HolesGetNothingOfAFitThatLeadsFarAboveTheDark) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0, 1);
+    const std::vector<Candidate> candidates{{constant(0.236f), constant(0.236f)},
+                                            {constant(-0.3f), constant(-0.3f)},
+                                            {constant(0.001f), constant(0.001f)}};
+    Selection s = mixture_of(candidates);
+    fill_undershoot(candidates, halves, s);
+    EXPECT_FLOAT_EQ(s.half[0][1](20, 20), 0.001f) << "the samples' light, though without a share";
+}
+
 TEST(Undershoot, WhereSamplesAreNegativeMixturesMayBe) {
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0, 1);
     halves[1].color[2](0, 63) = -0.3f;
     const std::vector<Candidate> candidates{{constant(-0.2f), constant(0.1f)},
                                             {constant(-0.4f), constant(-0.3f)},
-                                            {constant(0.2f), constant(0.2f)}};
+                                            {constant(-0.2f), constant(0.2f)}};
     Selection s = mixture_of(candidates);
     fill_undershoot(candidates, halves, s);
     EXPECT_FLOAT_EQ(s.half[0][1](0, 63), -0.3f);
