@@ -180,6 +180,11 @@ float sharp_lobe_roughness(const Bsdf& bsdf) {
         bsdf);
 }
 
+bool enters_body(const Bsdf& bsdf, const BsdfSample& s) {
+    const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf);
+    return body && !body->is_left && is_transmission(s.lobe);
+}
+
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value) {
     return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi, value); }, bsdf);
 }

@@ -244,6 +244,8 @@ bool has_sharp_lobe(const Bsdf& bsdf);
 /// The larger GGX alpha of a model's sharp lobe, of both where there are two; 0 where it is
 /// specular, infinite where there is none.
 float sharp_lobe_roughness(const Bsdf& bsdf);
+/// Whether a sample goes into a body that scatters light inside, where only a walk goes on.
+bool enters_body(const Bsdf& bsdf, const BsdfSample& s);
 /// The parts of `value` = eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have
 /// no part. Callers have evaluated the pair before, so that nothing is computed twice.
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value);

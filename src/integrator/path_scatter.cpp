@@ -119,9 +119,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     // Sample the BSDF or the guide
     auto s = sample_direction(surface, u_lobe, u);
     if (!s || is_black(s->weight)) return false;
-    if (const auto* body = std::get_if<SubsurfaceBsdf>(&surface.bsdf);
-        body && !body->is_left && is_transmission(s->lobe))
-        return enter_body(surface, *body, *s, vertex);
+    if (enters_body(surface.bsdf, *s)) return enter_body(surface, *s, vertex);
     // Choose the kind of ray. A pair of directions that several lobes have is split among them, as
     // it is where the light of a lamp is sampled
     ray_.kind = kind_of(surface.bsdf, s->lobe);

@@ -10,8 +10,8 @@
 
 namespace covtrace {
 
-bool PathTracer::enter_body(const Surface& surface, const SubsurfaceBsdf& bsdf, const BsdfSample& s,
-                            PathVertex* vertex) {
+bool PathTracer::enter_body(const Surface& surface, const BsdfSample& s, PathVertex* vertex) {
+    const auto& bsdf = std::get<SubsurfaceBsdf>(surface.bsdf);
     const SurfaceHit& hit = surface.hit;
     const Vec3 wi = normalize(surface.frame.to_world(s.wi));
     beta_ *= s.weight;

@@ -179,8 +179,7 @@ class PathTracer {
 
     // ---- path_subsurface.cpp: walks through bodies that scatter light inside
     /// Goes into the body below a surface, in the sampled direction.
-    bool enter_body(const Surface& surface, const SubsurfaceBsdf& bsdf, const BsdfSample& s,
-                    PathVertex* vertex);
+    bool enter_body(const Surface& surface, const BsdfSample& s, PathVertex* vertex);
     /// Takes a step inside, to a place that scatters or to the border, `found`; returns false where
     /// the path ends.
     bool cross_body(bool found);

@@ -51,7 +51,7 @@ class Pilot {
             if (has_sharp_lobe(bsdf)) send_light_around(hit.position, hit.t, hit.time);
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(-ray.direction), u_lobe, rng_.next_2d());
-            if (!s || is_black(s->weight)) return;
+            if (!s || is_black(s->weight) || enters_body(bsdf, *s)) return;
             sees = sees && is_specular(s->lobe);
             follow(ray, hit, normalize(frame.to_world(s->wi)));
         }
@@ -126,7 +126,7 @@ class Pilot {
         for (int i = 0; i < kChainVertices; ++i) {
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(towards_light), u_lobe, rng_.next_2d());
-            if (!s || is_black(s->weight) || is_diffuse(s->lobe)) return;
+            if (!s || is_black(s->weight) || is_diffuse(s->lobe) || enters_body(bsdf, *s)) return;
             weight *= s->weight;
             const bool is_reflected = (frame.to_local(towards_light).z > 0) == (s->wi.z > 0);
             source = hash_combine(source, hit.shape, hit.instance, is_reflected);

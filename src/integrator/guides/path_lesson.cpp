@@ -60,7 +60,10 @@ void add(PathLesson& lesson, const PathRecord& record, uint32_t path) {
             lesson.bounces[size_t(open)].passed = v.carried / left;
             open = -1;
         }
-        lesson.places.push_back({v.hit.position, face_forward(v.shading.z, v.wo)});
+        // A body's light comes to where it leaves from outside, not from where the path was
+        const bool may_learn = v.guided_normal != Vec3{};
+        lesson.places.push_back(
+            {v.hit.position, may_learn ? v.guided_normal : face_forward(v.shading.z, v.wo)});
         lesson.direct.push_back((v.direct + v.mirrored) / v.carried);
         lesson.light.push_back((behind[size_t(k)] - v.emitted) / v.carried);
         if (!(v.carried_on > 0) || !v.scatters || v.next_event.lobes.count == 0) continue;
@@ -68,7 +71,7 @@ void add(PathLesson& lesson, const PathRecord& record, uint32_t path) {
         left = v.carried_on;
         GuideBounce b;
         b.from = static_cast<uint32_t>(visit);
-        b.is_guided = v.guided_normal != Vec3{} && !is_specular_event(v);
+        b.is_guided = may_learn && !is_specular_event(v);
         b.direction = v.next_event.wi;
         b.value = v.next_value;
         b.path_pdf = v.next_value * v.carried / v.carried_on;
