@@ -119,7 +119,9 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     // Sample the BSDF or the guide
     auto s = sample_direction(surface, u_lobe, u);
     if (!s || is_black(s->weight)) return false;
-    if (enters_body(surface.bsdf, *s)) return enter_body(surface, *s, vertex);
+    if (enters_body(surface.bsdf, *s) || goes_back_in(surface, *s))
+        return enter_body(surface, *s, vertex);
+    body_.reset();
     // Choose the kind of ray. A pair of directions that several lobes have is split among them, as
     // it is where the light of a lamp is sampled
     ray_.kind = kind_of(surface.bsdf, s->lobe);

@@ -2,6 +2,7 @@
 /// leaves: a random walk through the body's medium, as in Chiang, Kutz and Burley 2016, "Practical
 /// and controllable subsurface scattering for production path tracing". Lights are sampled where it
 /// leaves, not on the way, where the border is between. The walk counts as one scattering event.
+#include <algorithm>
 #include <cmath>
 
 #include "bsdf/fresnel.h"
@@ -10,10 +11,22 @@
 
 namespace covtrace {
 
+bool PathTracer::goes_back_in(const Surface& surface, const BsdfSample& s) const {
+    if (!body_) return false;
+    const Vec3 out = face_forward(surface.hit.ng, -surface.frame.to_world(surface.wo));
+    return dot(out, surface.frame.to_world(s.wi)) < 0;
+}
+
 bool PathTracer::enter_body(const Surface& surface, const BsdfSample& s, PathVertex* vertex) {
     const auto& bsdf = std::get<SubsurfaceBsdf>(surface.bsdf);
     const SurfaceHit& hit = surface.hit;
-    const Vec3 wi = normalize(surface.frame.to_world(s.wi));
+    Vec3 wi = normalize(surface.frame.to_world(s.wi));
+    if (!bsdf.is_left) {
+        // Below a turned normal may be above the surface: let light enter in any case
+        const Vec3 out = face_forward(hit.ng, surface.frame.to_world(surface.wo));
+        const float cosine = dot(out, wi);
+        if (cosine > 0) wi = normalize(wi - out * (2 * cosine));
+    }
     beta_ *= s.weight;
     colourless_beta_ *= s.weight;
     specular_ = sharp_so_far_ = seen_clearly_ = false;
@@ -23,14 +36,14 @@ bool PathTracer::enter_body(const Surface& surface, const BsdfSample& s, PathVer
         vertex->next_event.lobes.count = 1;
         vertex->next_event.lobes.lobes[0] = {LobeKind::diffuse_transmission, s.weight};
     }
-    const MaterialId surface_material = surface.shape.description.material;
-    body_ = Body{{bsdf.absorption, bsdf.scattering, {}, bsdf.g},
-                 scene_.materials.at(surface_material, hit, scene_.textures).id,
-                 surface_material,
-                 0,
-                 bsdf.refracts ? bsdf.border.eta : 1,
-                 max_component(beta_),
-                 0};
+    if (!body_) {
+        const MaterialId of_shape = surface.shape.description.material;
+        body_ = Body{{}, scene_.materials.at(of_shape, hit, scene_.textures).id, of_shape};
+    }
+    body_->medium = Medium{bsdf.absorption, bsdf.scattering, {}, bsdf.g};
+    body_->eta = bsdf.refracts ? bsdf.border.eta : 1;
+    body_->entered = max_component(beta_);
+    body_->steps = 0;
     ray_.origin = Geometry::offset_origin(hit, wi);
     ray_.direction = wi;
     ray_.t_max = kInfinity;
@@ -106,7 +119,6 @@ bool PathTracer::leave_body(const SurfaceHit& hit, const PlacedShape& shape) {
     }
     sampler_.set_dimension(pairs_to_come());
     ++steps_in_bodies_;
-    body_.reset();
     ray_begin_ = hit.position;
     return light_and_scatter({hit, shape, bsdf, frame, {0, 0, is_outside ? -1.0f : 1.0f}},
                              is_outside ? frame.z : -frame.z, vertex);

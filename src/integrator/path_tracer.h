@@ -178,7 +178,11 @@ class PathTracer {
     bool light_and_scatter(const Surface& surface, Vec3 normal, PathVertex* vertex);
 
     // ---- path_subsurface.cpp: walks through bodies that scatter light inside
-    /// Goes into the body below a surface, in the sampled direction.
+    /// Whether the direction in which light leaves the body that the path is in, above the normal of
+    /// shading, goes below the surface, back into the body.
+    bool goes_back_in(const Surface& surface, const BsdfSample& s) const;
+    /// Goes into the body below a surface, in the sampled direction, or on in the one that the path
+    /// is in.
     bool enter_body(const Surface& surface, const BsdfSample& s, PathVertex* vertex);
     /// Takes a step inside, to a place that scatters or to the border, `found`; returns false where
     /// the path ends.

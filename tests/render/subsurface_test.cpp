@@ -19,6 +19,11 @@ LookAt 0 0 4  0 0 0  0 1 0
 Camera "orthographic" "float screenwindow" [ -.3 .3 -.3 .3 ]
 WorldBegin
 LightSource "infinite" "rgb L" [ 1 1 1 ]
+AttributeBegin
+Scale .05 .05 .05
+Texture "wrinkles" "float" "wrinkled" "float roughness" .6
+AttributeEnd
+Texture "bumps" "float" "scale" "texture tex" "wrinkles" "float scale" .02
 Material "subsurface" {}
 {}
 )",
@@ -97,6 +102,18 @@ TEST(Subsurface, WhiteBallsSendBackAllLight) {
             expect_means(
                 scene_of(std::string(body) + border, "Shape \"sphere\" \"float radius\" .5", 1000),
                 Rgb(1), 2e-3f, 64);
+}
+
+// Light enters by and leaves through normals that are turned, also where below the one is above the
+// other.
+TEST(Subsurface, TurnedNormalsLoseNoLight) {
+    for (const char* border :
+         {"\"float eta\" 1", "\"float eta\" 1.5", "\"bool refracts\" false \"float eta\" 1"})
+        expect_means(scene_of(std::string("\"rgb reflectance\" [ 1 1 1 ] \"rgb mfp\" [ .1 .1 .1 ] "
+                                          "\"texture displacement\" \"bumps\" ") +
+                                  border,
+                              "Shape \"sphere\" \"float radius\" .5", 1000),
+                     Rgb(1), 5e-3f, 64);
 }
 
 // A mesh's other parts end the body, and what is inside of it does not.
