@@ -4,12 +4,39 @@
 /// leaves, not on the way, where the border is between. The walk counts as one scattering event.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bsdf/fresnel.h"
 #include "integrator/path_tracer.h"
 #include "shading/phase_function.h"
 
 namespace covtrace {
+
+namespace {
+
+/// The medium below a hit, where it is too dense for positions in single precision thinned to what
+/// they resolve: a walk in steps below the distance by which its origin is moved off the surface
+/// would never find back. What leaves is the same, since only the scale changes.
+Medium medium_below(const SubsurfaceBsdf& bsdf, const SurfaceHit& hit) {
+    // Shortest mean free path over the uncertainty of the position: the reflectances 0.9, 0.5 and
+    // 0.2 of a ball lose less than 1 %, with a third of it up to 3 %; three times it blurs bodies
+    // far from the scene's origin more.
+    constexpr float kResolved = 30;
+    const Vec3 p = hit.position;
+    const float size = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    const float shortest =
+        kResolved * (hit.position_error + std::numeric_limits<float>::epsilon() * size);
+    Medium medium{bsdf.absorption, bsdf.scattering, {}, bsdf.g};
+    for (int c = 0; c < 3; ++c) {
+        const float paths = shortest * (bsdf.absorption[c] + bsdf.scattering[c]);
+        if (!(paths > 1)) continue;
+        medium.absorption[c] /= paths;
+        medium.scattering[c] /= paths;
+    }
+    return medium;
+}
+
+}  // namespace
 
 bool PathTracer::goes_back_in(const Surface& surface, const BsdfSample& s) const {
     if (!body_) return false;
@@ -40,7 +67,7 @@ bool PathTracer::enter_body(const Surface& surface, const BsdfSample& s, PathVer
         const MaterialId of_shape = surface.shape.description.material;
         body_ = Body{{}, scene_.materials.at(of_shape, hit, scene_.textures).id, of_shape};
     }
-    body_->medium = Medium{bsdf.absorption, bsdf.scattering, {}, bsdf.g};
+    body_->medium = medium_below(bsdf, hit);
     body_->eta = bsdf.refracts ? bsdf.border.eta : 1;
     body_->entered = max_component(beta_);
     body_->steps = 0;

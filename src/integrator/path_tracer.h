@@ -178,8 +178,8 @@ class PathTracer {
     bool light_and_scatter(const Surface& surface, Vec3 normal, PathVertex* vertex);
 
     // ---- path_subsurface.cpp: walks through bodies that scatter light inside
-    /// Whether the direction in which light leaves the body that the path is in, above the normal of
-    /// shading, goes below the surface, back into the body.
+    /// Whether the direction in which light leaves the body that the path is in, above the normal
+    /// of shading, goes below the surface, back into the body.
     bool goes_back_in(const Surface& surface, const BsdfSample& s) const;
     /// Goes into the body below a surface, in the sampled direction, or on in the one that the path
     /// is in.

@@ -76,6 +76,13 @@ Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables)
                                (m.max_depth + 1) / 2);
 }
 
+/// Coefficients of a medium, of which sums and shares are numbers.
+Rgb coefficients(Rgb c) {
+    constexpr float kMost = 1e30f;
+    c = at_least_0(c);
+    return {std::min(c.r, kMost), std::min(c.g, kMost), std::min(c.b, kMost)};
+}
+
 Bsdf make(const SubsurfaceMaterial& m, const Values& v, const Tables& tables) {
     SubsurfaceBsdf b;
     b.refracts = m.refracts;
@@ -98,8 +105,8 @@ Bsdf make(const SubsurfaceMaterial& m, const Values& v, const Tables& tables) {
             ? scattering_of_reflectance(v.reflectance(),
                                         m.scale * at_least_0(v.spectrum(m.mean_free_path, 1)), b.g,
                                         inside, entry)
-            : Scattering{m.scale * at_least_0(v.spectrum(m.absorption, 0)),
-                         m.scale * at_least_0(v.spectrum(m.scattering, 0))};
+            : Scattering{coefficients(m.scale * v.spectrum(m.absorption, 0)),
+                         coefficients(m.scale * v.spectrum(m.scattering, 0))};
     b.absorption = s.absorption;
     b.scattering = s.scattering;
     if (m.border.reflectance < 0)

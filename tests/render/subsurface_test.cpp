@@ -116,6 +116,17 @@ TEST(Subsurface, TurnedNormalsLoseNoLight) {
                      Rgb(1), 5e-3f, 64);
 }
 
+// Walks in steps that positions don't resolve would not find back to the surface.
+TEST(Subsurface, DensestBodiesHaveTheirReflectance) {
+    for (const char* path : {"0", "1e-30", "1e-9", "1e-6"})
+        expect_means(
+            scene_of(fmt::format("\"rgb reflectance\" [ .8 .5 .2 ] \"rgb mfp\" [ {0} .02 {0} ] "
+                                 "\"bool refracts\" false \"float eta\" 1",
+                                 path),
+                     kBlock),
+            {0.8f, 0.5f, 0.2f}, 0.007f);
+}
+
 // A mesh's other parts end the body, and what is inside of it does not.
 TEST(Subsurface, WalksPassThingsInside) {
     const std::string white = "\"rgb reflectance\" [ 1 1 1 ] \"rgb mfp\" [ .1 .1 .1 ]";
