@@ -12,8 +12,8 @@ namespace {
 
 using namespace test;
 
-/// Glass, a mirror, fog behind an interface, a leaf with alpha, a lamp; `balls` are shapes that
-/// Embree does not know, `moving` makes one of them move.
+/// Glass, a mirror, fog behind an interface, a leaf with alpha, a body that scatters light inside,
+/// a lamp; `balls` are shapes that Embree does not know, `moving` makes one of them move.
 std::string scene_text(bool balls, bool moving) {
     std::string text = R"(
 LookAt 0 1 -6  0 0.5 0  0 1 0
@@ -37,6 +37,12 @@ MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.2 0.3 ] 
 AttributeBegin
 MediumInterface "fog" ""
 Material "interface"
+Shape "trianglemesh" "point3 P" [ 0 0 0  2 0 0  1 0 2  1 2 1 ] "integer indices" [ 0 1 2  0 3 1  1 3 2  2 3 0 ]
+AttributeEnd
+AttributeBegin
+Translate 0.3 0.1 -2
+Scale 0.5 0.5 0.5
+Material "subsurface" "rgb reflectance" [ 0.8 0.6 0.4 ] "rgb mfp" [ 0.3 0.2 0.1 ]
 Shape "trianglemesh" "point3 P" [ 0 0 0  2 0 0  1 0 2  1 2 1 ] "integer indices" [ 0 1 2  0 3 1  1 3 2  2 3 0 ]
 AttributeEnd
 )";
