@@ -192,6 +192,9 @@ SubsurfaceMaterial Builder::subsurface() {
     roughness(m.border);
     m.border.eta = constant_index(p, "eta", 1.33f, context);
     m.scale = p.number("scale", 1);
+    if (m.scale < 0)
+        throw Error(ErrorKind::scene, p.where("scale", e.where),
+                    "parameter \"scale\" of material \"subsurface\" must not be negative");
     m.g = textures.grey_or_none(p, "g");
     // The parameters are ours, not pbrt's: the body under Blender's Principled.
     m.refracts = p.flag("refracts", true);

@@ -235,6 +235,8 @@ TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
     EXPECT_EQ(body("").material.border.eta, 1.33f);
     EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"string name\" \"Ketchip\""),
                          "did you mean \"Ketchup\""));
+    EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"float scale\" -1"),
+                         "\"scale\" of material \"subsurface\" must not be negative"));
     EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"rgb sigma_a\" [ 1 1 1 ]"),
                          "expected both or none"));
 }
