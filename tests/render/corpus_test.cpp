@@ -219,6 +219,14 @@ TEST(CorpusFile, HairIsAsBrightAsInPbrt) {
         EXPECT_NEAR(b.mean[c], expected[c], 0.005f * expected[c] + 5 * b.error[c]);
 }
 
+TEST(CorpusFile, MarbleSendsBackNearlyAllLight) {
+    const Block b = block(render_file("material-subsurface", 64), Where::middle);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_GT(b.mean[c], 0.97f);
+        EXPECT_LT(b.mean[c], 1 + 5 * b.error[c]);
+    }
+}
+
 // Every file of the folder opens; only these ask for what is replaced or left out.
 TEST(CorpusFile, OnlySubstitutesWarn) {
     const std::set<std::string> replaced{"shape-cylinder", "light-moving", "light-area-object"};

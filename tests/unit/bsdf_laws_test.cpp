@@ -266,7 +266,7 @@ TEST_P(BsdfLaws, SampleAgreesWithEvalAndPdf) {
     if (is_specular(bsdf) || GetParam().name == "black")
         EXPECT_EQ(sampled, 0);
     else
-        EXPECT_GT(sampled, 300);  // most samples enter the bodies, which counts as specular
+        EXPECT_GT(sampled, 300);  // most samples of bodies enter, which counts as specular
 }
 
 TEST_P(BsdfLaws, LobesSumToEval) {
