@@ -129,6 +129,8 @@ class PrincipledExporter(SubsurfaceExporter):
     def _mixed_colours(self, first, second, share):
         """Share `share` of the second Value of colour; of images one alone, the one of which there is more."""
         if first.image or second.image:
+            if 0 < share < 1:
+                self.warn(f"material '{self.name}': Principled's Base Color and Subsurface Color are not mixed where one is an image")
             return second if share >= 0.5 else first
         return Value(tuple(a + share * (b - a) for a, b in zip(first.constant, second.constant)))
 

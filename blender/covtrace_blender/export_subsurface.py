@@ -63,8 +63,9 @@ class SubsurfaceExporter(EmissionReader):
         if is_skin(method):
             eta = self._plain(either(get, "Subsurface IOR", "IOR"))
         eta = max(eta, 1.01)
-        roughness = 1.0 if is_skin(method) or "Roughness" not in get else self._plain(get["Roughness"])
-        parameters = parameters + entry(method, eta, roughness)
+        rough = Value(1.0) if is_skin(method) or "Roughness" not in get else self._value(get["Roughness"], True)
+        # An image of it turns the directions in which light enters but little.
+        parameters = parameters + entry(method, eta, get["Roughness"].default_value if rough.image else rough.constant)
         free_path = self._value(radius)
         if is_skin(method):
             if free_path.image:

@@ -79,9 +79,11 @@ bool PathTracer::enter_body(const Surface& surface, const BsdfSample& s, PathVer
 }
 
 bool PathTracer::cross_body(bool found) {
-    // Throughput over that of the way in below which a walk may end at random. Beyond the long
-    // walk, which one of a hundred exceeds in a white half space that absorbs nothing, it goes on
-    // for a thousand steps in the mean.
+    // Throughput over that of the way in below which a walk may end at random, as for all paths
+    // (docs/decisions/0075). Beyond the long walk, which one of a hundred exceeds in a half space
+    // that absorbs nothing (1 / sqrt(pi n) of symmetric walks are longer than n steps: Sparre
+    // Andersen 1954, "On the fluctuations of sums of random variables II"), it goes on for a
+    // thousand steps in the mean.
     constexpr float kFaint = 0.25f, kLeastEnd = 0.001f;
     constexpr int kLongWalk = 4096;
     sampler_.set_dimension(pairs_to_come() + kPairsPerBounce);

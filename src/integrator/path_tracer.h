@@ -189,7 +189,8 @@ class PathTracer {
     bool cross_body(bool found);
     /// Leaves the body at the hit.
     bool leave_body(const SurfaceHit& hit, const PlacedShape& shape);
-    /// Whether the hit, met from inside, is on the border of the body.
+    /// Whether the hit, met from inside, is on the border of the body; else the path has gone into
+    /// or out of a thing inside, which is counted.
     bool is_border(const SurfaceHit& hit, const PlacedShape& shape);
 
     // ---- path_light.cpp: light that is found

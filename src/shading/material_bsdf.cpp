@@ -96,7 +96,7 @@ Bsdf make(const SubsurfaceMaterial& m, const Values& v, const Tables& tables) {
         b.facet_eta = m.facet_eta;
         b.facet_alpha_x = b.facet_alpha_y = m.facet_alpha;
     }
-    constexpr float kMostForward = 0.99f;
+    constexpr float kMostForward = 0.99f;  // beyond it light goes straight on
     b.g = std::clamp(v.number(m.g, 0), -kMostForward, kMostForward);
     const float inside = m.refracts ? inner_reflectance(b.border) : 0;
     const Entry entry = m.refracts ? Entry::perpendicular : Entry::diffuse;

@@ -46,7 +46,7 @@ class SubsurfaceTest(BlenderTest):
 
     def test_wide_bodies_are_as_bright(self):
         # Cycles ends walks after 256 steps, by which white bodies lose 4 %. Before 4.0 it lets light leave by Disney's diffuse
-        # lobe, which reflects more than it is to, up to 15 % aslant.
+        # lobe, which reflects more than it is to, 18 % at 1.2 radian.
         is_new = bpy.app.version >= (4, 0)
         for colour in (SKIN, GREY):
             for method in ("RANDOM_WALK", "RANDOM_WALK_SKIN"):
