@@ -28,6 +28,7 @@ def main(library, name, time, image, rows, samples, ray):
         here.worlds = [n for n in there.worlds if n == name]
     scene = bpy.context.scene
     scene.world = here.worlds[0]
+    scene.world.cycles.sampling_method = "NONE"  # nothing is lit
     tree = scene.world.node_tree
     for link in [k for k in tree.links if k.to_node.type == "OUTPUT_WORLD" and k.to_socket.name == "Volume"]:
         tree.links.remove(link)

@@ -4,9 +4,11 @@ import math
 import os
 import tempfile
 import unittest
+import unittest.mock
 
 import bpy
 from addon_support import CyclesTest, mean, render
+from covtrace_blender import photometry
 
 
 def ies(vertical, horizontal, candela, tilt="NONE", kind=1):
@@ -34,6 +36,10 @@ class PhotometryTest(CyclesTest):
         matt = self.shader("BsdfDiffuse", "matt", Color=(0.6, 0.5, 0.4, 1))
         self.thing("plane", matt, size=20)
         self.camera.data.lens = 20
+        # A picture of the whole plane needs no image of a million texels
+        size = unittest.mock.patch.object(photometry, "SIZE", 256)
+        size.start()
+        self.addCleanup(size.stop)
 
     def photometric(self, kind, text, rotation=(0.4, 0.2, 0.5), scale=(1, 1, 1), **values):
         lamp = self.lamp(kind, energy=20, location=(0.3, 0, 2.5), **values)
