@@ -156,13 +156,24 @@ Rgb to_rgb(const Rgb64& v) {
     return {static_cast<float>(v.c[0]), static_cast<float>(v.c[1]), static_cast<float>(v.c[2])};
 }
 
+double luminance_of(const Rgb64& v) {
+    return 0.2126 * v.c[0] + 0.7152 * v.c[1] + 0.0722 * v.c[2];
+}
+
 Rgb luminance_one(Rgb64 v) {
-    const double y = 0.2126 * v.c[0] + 0.7152 * v.c[1] + 0.0722 * v.c[2];
+    const double y = luminance_of(v);
     if (!(y > 0) || !std::isfinite(y)) return Rgb{0};
     // Negative components, of colours outside Rec.709, are cut off last, as a viewer of pbrt's
     // images does.
     for (double& c : v.c) c = std::max(0.0, c / y);
     return to_rgb(v);
+}
+
+/// The logarithm of Planck's law but for a factor; it doesn't underflow at low temperatures.
+double log_planck(double nm, double kelvin) {
+    constexpr double c2 = 1.438776877e7;  // second radiation constant, nm K
+    const double x = c2 / (nm * kelvin);
+    return -5 * std::log(nm) - (x > 500 ? x : std::log(std::expm1(x)));
 }
 
 /// Reflectance at normal incidence of eta + ik against vacuum.
@@ -189,21 +200,25 @@ double Spectrum::at(double l) const {
 }
 
 Spectrum blackbody_spectrum(double kelvin) {
-    // Planck's law is taken as a logarithm, which doesn't underflow at low temperatures.
-    const auto log_planck = [kelvin](double nm) {
-        constexpr double c2 = 1.438776877e7;  // second radiation constant, nm K
-        const double x = c2 / (nm * kelvin);
-        return -5 * std::log(nm) - (x > 500 ? x : std::log(std::expm1(x)));
-    };
     std::vector<double> logs;
     Spectrum s;
     for (int l = kFirst; l <= kLast; ++l) {
         s.wavelengths.push_back(static_cast<float>(l));
-        logs.push_back(log_planck(l));
+        logs.push_back(log_planck(l, kelvin));
     }
     const double largest = *std::max_element(logs.begin(), logs.end());
     for (const double v : logs) s.values.push_back(static_cast<float>(std::exp(v - largest)));
     return s;
+}
+
+Rgb blackbody_radiance(double kelvin) {
+    constexpr double kWien = 2.897771955e6;  // nm K
+    const double largest = log_planck(kWien / kelvin, kelvin);
+    const auto light = [](double l) { return response().at(l); };
+    const auto relative = [&](double l) { return std::exp(log_planck(l, kelvin) - largest); };
+    const double y = luminance_of(integral(pieces({}), light, relative)) /
+                     luminance_of(integral(pieces({}), light, one));
+    return emission_colour(blackbody_spectrum(kelvin)) * static_cast<float>(y);
 }
 
 Rgb reflectance_colour(const Spectrum& s) {

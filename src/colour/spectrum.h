@@ -36,6 +36,10 @@ std::span<const ObserverSample> observer_samples();
 /// value 1.
 Spectrum blackbody_spectrum(double kelvin);
 
+/// Colour and brightness of a black body at this temperature (kelvin, > 0) whose spectral radiance
+/// is 1 where it is largest, at any wavelength; light of 1 at all wavelengths has the luminance 1.
+Rgb blackbody_radiance(double kelvin);
+
 /// Colour of a surface with this reflectance (or of any other factor) under D65.
 Rgb reflectance_colour(const Spectrum& s);
 /// Colour of light with this spectrum, scaled to luminance 1, as pbrt normalises its lights; then

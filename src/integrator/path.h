@@ -1,4 +1,4 @@
-/// The path tracer: surfaces and homogeneous media, next-event estimation, sampling of BSDFs and
+/// The path tracer: surfaces and media, next-event estimation, sampling of BSDFs and
 /// phase functions, multiple importance sampling, Russian roulette.
 #pragma once
 

@@ -9,20 +9,25 @@ namespace covtrace {
 
 MediumEvent PathTracer::cross_medium(float length) {
     const Medium& medium = scene_.media[static_cast<size_t>(medium_)];
+    const MediumWay way(medium, ray_.origin, ray_.direction);
     // Add emission
-    if (depth_ < max_depth_ && !is_black(medium.emission)) {
-        const Rgb contribution = beta_ * emitted_along(medium, length);
+    const uint32_t piece = static_cast<uint32_t>(passed_interfaces_) +
+                           static_cast<uint32_t>(depth_) * (kMostInterfaces + 1);
+    if (depth_ < max_depth_ && medium.emits()) {
+        const float u = medium.glow ? sampler_.pair(kGlowPairs + piece).x : 0;
+        const Rgb contribution = beta_ * emitted_along(medium, way, length, u);
         result_.radiance += contribution;
         if (record_) glow_ += luminance(contribution);
     }
     // Sample the distance at which the medium scatters
-    MediumEvent event{false, length, transmittance(medium, length)};
+    MediumEvent event{false, length, {}};
     if (depth_ < max_depth_ && medium.scatters()) {
-        sampler_.set_dimension(kMediumPairs + static_cast<uint32_t>(passed_interfaces_) +
-                               static_cast<uint32_t>(depth_) * (kMostInterfaces + 1));
+        sampler_.set_dimension(kMediumPairs + piece);
         Vec2 u = sampler_.next_2d();
         const std::optional<LightBeside> light = light_beside(length, u.x);
-        event = sample_event(medium, length, beta_, u, light);
+        event = sample_event(medium, way, length, beta_, u, light);
+    } else {
+        event.weight = transmittance(medium, way.column(length));
     }
     beta_ *= event.weight;
     return event;

@@ -42,7 +42,7 @@ bool PathTracer::find_mirror(int mirror, Ray ray, SurfaceHit& hit, MediumId& med
     for (int i = 0; i < kMostInterfaces; ++i) {
         ++result_.rays.shadow;
         if (!scene_.geometry.intersect(ray, hit)) return false;
-        passes *= transmittance(scene_, medium, hit.t);
+        passes *= transmittance(scene_, medium, ray, hit.t);
         if (scene_.mirrors.at(hit) == mirror) return true;
         const float share = passed_share(scene_, hit);
         if (!(share > 0)) return false;

@@ -122,7 +122,7 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
         // Find what the way meets, and its light
         ++result_.rays.shadow;
         const bool found = scene_.geometry.intersect(ray, hit);
-        carried *= transmittance(scene_, medium, found ? hit.t : kInfinity);
+        carried *= transmittance(scene_, medium, ray, found ? hit.t : kInfinity);
         if (!found) {
             if (scene_.lights.has_environment())
                 add(scene_.lights.environment(ray.origin, ray.direction, ray.kind));

@@ -90,7 +90,7 @@ bool PathTracer::cross_body(bool found) {
     const auto [u_distance, u_direction, u_border, u_roulette] = sampler_.next_four_2d();
     // Sample the distance at which the medium scatters
     const MediumEvent event =
-        sample_event(body_->medium, found ? hit_.t : kInfinity, beta_, u_distance);
+        sample_event(body_->medium, {}, found ? hit_.t : kInfinity, beta_, u_distance);
     beta_ *= event.weight;
     colourless_beta_ *= event.weight;
     if (is_black(beta_) || (!event.scatters && !found)) return false;

@@ -71,6 +71,7 @@ class PathTracer {
     /// surfaces see the same numbers with or without them: one pair for each piece between
     /// interfaces.
     static constexpr uint32_t kMediumPairs = 1u << 20;
+    static constexpr uint32_t kGlowPairs = 3u << 29;  ///< likewise, of emission that varies
     static constexpr uint32_t kWavelengthPair = (1u << 20) - 1;  ///< of the path's wavelength
     static constexpr uint32_t kMirrorPairs = 1u << 19;  ///< first of two per bounce, for mirrors
     /// First dimension of the pairs of walks through bodies: for each of the path's steps inside

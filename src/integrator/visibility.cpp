@@ -45,14 +45,16 @@ MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, 
     return dot(w, hit.ng) < 0 ? d.inside : d.outside;
 }
 
-Rgb transmittance(const LitScene& scene, MediumId medium, float distance) {
+Rgb transmittance(const LitScene& scene, MediumId medium, const Ray& ray, float distance) {
     if (medium < 0) return Rgb(1);
-    return transmittance(scene.media[static_cast<size_t>(medium)],
-                         std::isfinite(distance) ? distance : scene.unbounded_distance);
+    const Medium& m = scene.media[static_cast<size_t>(medium)];
+    const MediumWay way(m, ray.origin, ray.direction);
+    return transmittance(m,
+                         way.column(std::isfinite(distance) ? distance : scene.unbounded_distance));
 }
 
 Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint64_t& rays) {
-    if (!scene.has_interfaces) return transmittance(scene, medium, distance);
+    if (!scene.has_interfaces) return transmittance(scene, medium, ray, distance);
     // Walk through the rest of the way: it holds only what lets light pass, and mixes that are
     // interfaces in places
     const Vec3 end = end_of(ray);
@@ -69,11 +71,11 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
             if (material.id != shape.description.material) return Rgb(0);
             break;
         }
-        passes *= material.weight * transmittance(scene, medium, hit.t);
+        passes *= material.weight * transmittance(scene, medium, ray, hit.t);
         medium = medium_beyond(shape, hit, ray.direction, medium);
         distance -= go_on_behind(hit, end, ray);
     }
-    return passes * transmittance(scene, medium, std::max(distance, 0.0f));
+    return passes * transmittance(scene, medium, ray, std::max(distance, 0.0f));
 }
 
 bool is_met(const LitScene& scene, Ray ray, uint64_t& rays) {

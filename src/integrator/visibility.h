@@ -19,9 +19,9 @@ MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, 
 /// The factor on light that comes through the surface at a hit unscattered; 0 where none does.
 float passed_share(const LitScene& scene, const SurfaceHit& hit);
 
-/// Transmittance over a piece of a medium; infinite lengths count as the scene's
+/// Transmittance over a piece of a ray in a medium; infinite lengths count as the scene's
 /// `unbounded_distance`.
-Rgb transmittance(const LitScene& scene, MediumId medium, float distance);
+Rgb transmittance(const LitScene& scene, MediumId medium, const Ray& ray, float distance);
 
 /// Aims a ray at a point from where it starts, to end just short of it; the point is to be clear of
 /// its surface. Returns the distance; 0: there is no way to go.

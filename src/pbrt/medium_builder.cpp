@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 
 #include "pbrt/named_media.h"
 #include "pbrt/spectrum_parameter.h"
 #include "pbrt/version_three.h"
 #include "scene/names.h"
+#include "volume/cloud.h"
+#include "volume/nanovdb_grid.h"
 
 namespace covtrace {
 
@@ -31,7 +37,8 @@ float mean_cosine(Entity& e) {
     return g;
 }
 
-void homogeneous(MediumDescription& medium, Entity& e, BuildContext& context) {
+/// The coefficients of a preset or of the parameters themselves, with their scale.
+void coefficients(MediumDescription& medium, Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     std::optional<NamedMedium> preset;
     if (const std::string name = p.text("preset"); !name.empty()) {
@@ -45,61 +52,216 @@ void homogeneous(MediumDescription& medium, Entity& e, BuildContext& context) {
     const float scale = not_negative(e, "scale");
     medium.sigma_a = (preset ? preset->sigma_a : coefficient(p, "sigma_a", context)) * scale;
     medium.sigma_s = (preset ? preset->sigma_s : coefficient(p, "sigma_s", context)) * scale;
+}
+
+void homogeneous(MediumDescription& medium, Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    coefficients(medium, e, context);
     const float emission = not_negative(e, "Lescale");
     if (p.has("Le"))
         medium.emission =
             scaled_light(light_colour(p, "Le", context), emission, p.where("Le", e.where), context);
-    p.warn_unused(context.log, "media of type \"homogeneous\"");
 }
 
-/// Mean of the grid values of one parameter, 1 where it isn't given; `stride` numbers make one
-/// value. Errors: Error(scene) where there are not nx ny nz values.
-Rgb grid_mean(Entity& e, std::string_view name, size_t stride) {
-    ParameterList& p = e.parameters;
-    const Parameter* given = p.find(name, {ParameterType::floats, ParameterType::rgb});
-    if (!given) return Rgb{1};
-    const std::vector<float>& values = given->numbers;
-    double cells = 1;
-    for (const char* side : {"nx", "ny", "nz"}) cells *= std::max(p.integer(side, 1), 0);
-    if (double(values.size()) != cells * double(stride))
-        throw Error(ErrorKind::scene, given->where,
-                    "parameter " + in_quotes(name) + " has " +
-                        std::to_string(values.size() / stride) +
-                        " values; expected nx * ny * nz of them");
-    std::array<double, 3> sum{};
-    for (size_t i = 0; i < values.size(); ++i) sum[stride == 3 ? i % 3 : 0] += values[i];
-    if (stride == 1) sum[1] = sum[2] = sum[0];
-    const auto mean = [&](double s) { return static_cast<float>(std::max(0.0, s / cells)); };
-    return {mean(sum[0]), mean(sum[1]), mean(sum[2])};
-}
-
-/// Makes an even medium with the mean coefficients of a grid.
-void grid(MediumDescription& medium, const std::string& type, Entity& e, BuildContext& context) {
-    ParameterList& p = e.parameters;
-    const float scale = not_negative(e, "scale");
-    if (type == "uniformgrid") {
-        if (!p.has("density"))
-            throw Error(
-                ErrorKind::scene, e.where,
-                "medium " + in_quotes(medium.name) + " has no grid; expected \"float density\"");
-        const float density = grid_mean(e, "density", 1).r;
-        medium.sigma_a = coefficient(p, "sigma_a", context) * (scale * density);
-        medium.sigma_s = coefficient(p, "sigma_s", context) * (scale * density);
-    } else {
-        medium.sigma_a = grid_mean(e, "sigma_a", 3) * scale;
-        medium.sigma_s = grid_mean(e, "sigma_s", 3) * scale;
+/// The numbers of cells along the axes. Errors: Error(scene) where one is not positive.
+LatticePlace cells(Entity& e) {
+    LatticePlace n;
+    const std::array<const char*, 3> names{"nx", "ny", "nz"};
+    for (size_t a = 0; a < 3; ++a) {
+        n[a] = e.parameters.integer(names[a], 1);
+        if (n[a] < 1)
+            e.refuse(names[a], "parameter " + in_quotes(names[a]) + " must be greater than 0");
     }
-    context.log.add(e.where, "medium " + in_quotes(medium.name) + ": grids of type " +
-                                 in_quotes(type) +
-                                 " are not rendered; an even medium of their mean density fills "
-                                 "the whole shape" +
-                                 (p.has("Le") || p.has("temperature") ? " and does not emit" : ""));
-    p.ignore_all();
+    return n;
+}
+
+/// The box of a grid, of pbrt's parameters p0 and p1.
+Bounds3 box_of(Entity& e) {
+    const Vec3 p0 = e.parameters.triple("p0", {}), p1 = e.parameters.triple("p1", {1, 1, 1});
+    const Bounds3 box{min(p0, p1), max(p0, p1)};
+    const Vec3 side = box.diagonal();
+    if (!(side.x > 0 && side.y > 0 && side.z > 0))
+        e.refuse("p1", "the box from \"p0\" to \"p1\" is flat");
+    return box;
+}
+
+/// A grid of values over a box, one in the middle of each of its cells. Beyond the outermost ones
+/// they fall to 0, and outside of the box there is nothing, as in pbrt.
+std::shared_ptr<const DensityGrid> cell_grid(std::span<const float> values, const LatticePlace& n,
+                                             const Bounds3& box,
+                                             const Transform& medium_from_world) {
+    const Vec3 count{float(n[0]), float(n[1]), float(n[2])}, side = box.diagonal();
+    const Transform lattice_from_medium =
+        Transform::translate({-0.5f, -0.5f, -0.5f}) *
+        Transform::scale(count.x / side.x, count.y / side.y, count.z / side.z) *
+        Transform::translate(-box.lo);
+    const auto value = [&](const LatticePlace& at) {
+        return values[size_t(at[0]) +
+                      size_t(n[0]) * (size_t(at[1]) + size_t(n[1]) * size_t(at[2]))];
+    };
+    return std::make_shared<const DensityGrid>(
+        lattice_from_medium * medium_from_world,
+        Bounds3{{-0.5f, -0.5f, -0.5f}, count - Vec3{0.5f, 0.5f, 0.5f}},
+        Lattice{{}, {n[0] - 1, n[1] - 1, n[2] - 1}, value});
+}
+
+/// The numbers of a parameter of a grid, `stride` for each cell; empty where it is not given.
+/// Errors: Error(scene) where they are too few, too many or negative.
+std::span<const float> cell_values(Entity& e, std::string_view name, ParameterType type,
+                                   const LatticePlace& n) {
+    const Parameter* given = e.parameters.find(name, {type});
+    if (!given) return {};
+    const std::vector<float>& values = given->numbers;
+    const size_t stride = type == ParameterType::rgb ? 3 : 1;
+    if (double(values.size()) != double(n[0]) * n[1] * n[2] * double(stride))
+        e.refuse(name, "parameter " + in_quotes(name) + " has " +
+                           std::to_string(values.size() / stride) +
+                           " values; expected nx * ny * nz of them");
+    if (std::ranges::any_of(values, [](float v) { return v < 0; }))
+        e.refuse(name, "parameter " + in_quotes(name) + " must not be negative");
+    return values;
+}
+
+/// A grid of one number for each cell; null where the parameter is not given.
+std::shared_ptr<const DensityGrid> uniform_grid(Entity& e, const CurrentTransform& space,
+                                                std::string_view name) {
+    const LatticePlace n = cells(e);
+    const std::span<const float> values = cell_values(e, name, ParameterType::floats, n);
+    if (values.empty()) return nullptr;
+    return cell_grid(values, n, box_of(e), space.get(e.where).inverse());
+}
+
+/// The offset that is subtracted from temperatures, which older files call a cutoff.
+float temperature_offset(ParameterList& p) {
+    return p.number("temperatureoffset", p.number("temperaturecutoff", 0));
+}
+
+/// Emission of a black body by its temperature in kelvin, (value - offset) * scale, none up to 100
+/// as in pbrt.
+std::shared_ptr<const Glow> thermal_glow(std::shared_ptr<const DensityGrid> temperature,
+                                         float offset, float scale, float factor, Entity& e,
+                                         BuildContext& context) {
+    constexpr int kTemperatures = 1024;
+    constexpr float kDark = 100;
+    Glow glow{std::move(temperature), std::vector<Rgb>(kTemperatures)};
+    const float step = glow.field->largest() / (kTemperatures - 1);
+    for (int i = 0; i < kTemperatures; ++i) {
+        const float kelvin = (float(i) * step - offset) * scale;
+        if (kelvin > kDark && std::isfinite(kelvin))
+            glow.radiance[size_t(i)] =
+                scaled_light(blackbody_radiance(double(kelvin)), factor, e.where, context);
+    }
+    return std::make_shared<const Glow>(std::move(glow));
+}
+
+void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
+                    BuildContext& context) {
+    ParameterList& p = e.parameters;
+    coefficients(medium, e, context);
+    medium.density = uniform_grid(e, space, "density");
+    if (!medium.density)
+        throw Error(
+            ErrorKind::scene, e.where,
+            "medium " + in_quotes(medium.name) + " has no grid; expected \"float density\"");
+    auto temperature = uniform_grid(e, space, "temperature");
+    if (temperature && p.has("Le"))
+        e.refuse("Le", "medium " + in_quotes(medium.name) +
+                           " has both \"Le\" and \"temperature\"; expected one of them");
+    if (temperature) {
+        medium.glow = thermal_glow(std::move(temperature), temperature_offset(p),
+                                   p.number("temperaturescale", 1), 1, e, context);
+    } else if (p.has("Le")) {
+        const Parameter* scales = p.find("Lescale", {ParameterType::floats});
+        const bool is_even = !scales || scales->numbers.size() == 1;
+        const float factor = is_even ? not_negative(e, "Lescale") : 1;
+        const Rgb light =
+            scaled_light(light_colour(p, "Le", context), factor, p.where("Le", e.where), context);
+        if (!is_even) {
+            auto scale = uniform_grid(e, space, "Lescale");
+            const Rgb brightest =
+                scaled_light(light, scale->largest(), p.where("Lescale", e.where), context);
+            medium.glow = std::make_shared<const Glow>(Glow{std::move(scale), {Rgb{}, brightest}});
+        } else {
+            medium.emission = light;
+        }
+    }
+}
+
+/// Makes a medium of the mean colour of its cells, as dense in each of them as its extinction is,
+/// all channels together.
+void rgb_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
+                BuildContext& context) {
+    const LatticePlace n = cells(e);
+    const float scale = not_negative(e, "scale");
+    const std::span<const float> absorption = cell_values(e, "sigma_a", ParameterType::rgb, n),
+                                 scattering = cell_values(e, "sigma_s", ParameterType::rgb, n);
+    const size_t count = std::max(absorption.size(), scattering.size()) / 3;
+    if (count == 0)
+        throw Error(ErrorKind::scene, e.where,
+                    "medium " + in_quotes(medium.name) +
+                        " has no grid; expected \"rgb sigma_a\" or \"rgb sigma_s\"");
+    std::vector<float> extinction(count);
+    const auto add = [&](std::span<const float> values) {
+        std::array<double, 3> sum{};
+        for (size_t i = 0; i < 3 * count; ++i) {
+            const float v = values.empty() ? 1 : values[i];
+            sum[i % 3] += double(v);
+            extinction[i / 3] += v;
+        }
+        const auto mean = [&](size_t c) { return float(sum[c] / double(count)); };
+        return Rgb{mean(0), mean(1), mean(2)} * scale;
+    };
+    medium.sigma_a = add(absorption);
+    medium.sigma_s = add(scattering);
+    double mean = 0;
+    for (float v : extinction) mean += double(v) / double(count);
+    if (mean > 0)
+        for (float& v : extinction) v /= float(mean);
+    medium.density = cell_grid(extinction, n, box_of(e), space.get(e.where).inverse());
+    context.log.add(e.where, "medium " + in_quotes(medium.name) +
+                                 ": grids of type \"rgbgrid\" have one colour, the mean of their "
+                                 "cells'; how dense they are varies" +
+                                 (e.parameters.has("Le") ? "; they do not emit" : ""));
+    e.parameters.ignore({"Le", "Lescale"});
+}
+
+void cloud_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
+                  BuildContext& context) {
+    coefficients(medium, e, context);
+    Cloud cloud{box_of(e), not_negative(e, "density"), e.parameters.number("wispiness", 1),
+                e.positive("frequency", 5)};
+    medium.density =
+        std::make_shared<const DensityGrid>(cloud_grid(cloud, space.get(e.where).inverse()));
+}
+
+void nanovdb_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
+                    BuildContext& context) {
+    ParameterList& p = e.parameters;
+    coefficients(medium, e, context);
+    const std::string name = p.text("filename");
+    if (name.empty())
+        throw Error(
+            ErrorKind::scene, e.where,
+            "medium " + in_quotes(medium.name) + " has no file; expected \"string filename\"");
+    const SourceLocation where = p.where("filename", e.where);
+    const std::filesystem::path file = context.files.find(name, where);
+    const std::string bytes = context.files.read(file, where);
+    const Transform medium_from_world = space.get(e.where).inverse();
+    const SourceLocation in_file{std::make_shared<const std::string>(file.string()), 0, 0};
+    medium.density = read_nanovdb(bytes, "density", medium_from_world, in_file);
+    if (!medium.density)
+        throw Error(ErrorKind::scene, in_file, "there is no grid \"density\" in the file");
+    const float factor = p.number("LeScale", not_negative(e, "Lescale"));
+    if (auto temperature = read_nanovdb(bytes, "temperature", medium_from_world, in_file);
+        temperature && factor > 0)
+        medium.glow = thermal_glow(std::move(temperature), temperature_offset(p),
+                                   p.number("temperaturescale", 1), factor, e, context);
 }
 
 }  // namespace
 
-MediumDescription build_medium(std::string name, Entity& e, BuildContext& context) {
+MediumDescription build_medium(std::string name, Entity& e, const CurrentTransform& space,
+                               BuildContext& context) {
     MediumDescription medium;
     medium.name = std::move(name);
     medium.where = e.where;
@@ -107,19 +269,22 @@ MediumDescription build_medium(std::string name, Entity& e, BuildContext& contex
     const std::string type = e.parameters.text("type");
     if (type.empty())
         throw Error(ErrorKind::scene, e.where, label + " has no type; expected \"string type\"");
-    if (type != "cloud" && type != "nanovdb") medium.g = mean_cosine(e);
+    medium.g = mean_cosine(e);
     if (type == "homogeneous") {
         homogeneous(medium, e, context);
-    } else if (type == "uniformgrid" || type == "rgbgrid") {
-        grid(medium, type, e, context);
-    } else if (type == "cloud" || type == "nanovdb") {
-        context.log.add(e.where, label + ": media of type " + in_quotes(type) +
-                                     " are not rendered; empty space takes its place");
-        e.parameters.ignore_all();
+    } else if (type == "uniformgrid") {
+        uniform_medium(medium, e, space, context);
+    } else if (type == "rgbgrid") {
+        rgb_medium(medium, e, space, context);
+    } else if (type == "cloud") {
+        cloud_medium(medium, e, space, context);
+    } else if (type == "nanovdb") {
+        nanovdb_medium(medium, e, space, context);
     } else {
         throw unknown_type_error(e.parameters.where("type", e.where), "medium", type,
                                  {"homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"});
     }
+    e.parameters.warn_unused(context.log, "media of type " + in_quotes(type));
     return medium;
 }
 

@@ -87,7 +87,7 @@ void SceneBuilder::medium(std::string name, Entity entity) {
             throw Error(
                 ErrorKind::scene, entity.where,
                 "medium " + in_quotes(name) + " is already defined at " + m.where.to_string());
-    scene_.media.push_back(build_medium(std::move(name), entity, context_));
+    scene_.media.push_back(build_medium(std::move(name), entity, state_.ctm[0], context_));
 }
 
 void SceneBuilder::texture(std::string name, bool is_spectrum, Entity entity) {

@@ -22,12 +22,14 @@
 #include "scene/material_description.h"
 #include "scene/ray_kind.h"
 #include "scene/texture_description.h"
+#include "volume/density_grid.h"
+#include "volume/glow.h"
 
 namespace covtrace {
 
 using MediumId = int;  ///< index into SceneDescription::media
 
-// ---- media: the same everywhere inside
+// ---- media
 
 struct MediumDescription {
     std::string name;
@@ -35,6 +37,10 @@ struct MediumDescription {
     Rgb emission;          ///< pbrt's Le: radiance of the absorbing part, scale applied
     float g = 0;           ///< mean cosine of the phase function, in (-1, 1)
     SourceLocation where;
+    /// Factor of both coefficients, in world space; null: 1 everywhere.
+    std::shared_ptr<const DensityGrid> density = {};
+    /// Emission that varies, in the place of `emission`; its field is in world space. May be null.
+    std::shared_ptr<const Glow> glow = {};
 };
 
 // ---- shapes, in object space

@@ -1,14 +1,15 @@
 #include "shading/medium.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace covtrace {
 
 namespace {
 
-float pass(float coefficient, float distance) {
-    return coefficient > 0 ? std::exp(-coefficient * distance) : 1.0f;
+float pass(float coefficient, float column) {
+    return coefficient > 0 ? std::exp(-coefficient * column) : 1.0f;
 }
 
 float sum(Rgb c) {
@@ -46,6 +47,37 @@ class EvenAngles {
     double span_;
 };
 
+Rgb even_glow(const Medium& medium, float column) {
+    Rgb sum;
+    const Rgb extinction = medium.extinction();
+    for (int c = 0; c < 3; ++c) {
+        if (!(medium.absorption[c] > 0 && medium.emission[c] > 0)) continue;
+        sum[c] = medium.absorption[c] / extinction[c] * medium.emission[c] *
+                 -std::expm1(-extinction[c] * column);
+    }
+    return sum;
+}
+
+Rgb glow_along(const Medium& medium, const MediumWay& way, float column, float length, float u) {
+    const Rgb extinction = medium.extinction();
+    const float mean = sum(extinction) / 3;
+    if (!(mean * column > 0)) return {};
+    constexpr int kPlaces = 4;
+    std::array<float, kPlaces> columns, distances;
+    const float whole = -std::expm1(-mean * column);
+    for (int i = 0; i < kPlaces; ++i)
+        columns[size_t(i)] = -std::log1p(-(float(i) + u) / kPlaces * whole) / mean;
+    way.distances(columns, length, distances);
+    Rgb light;
+    for (size_t i = 0; i < kPlaces; ++i) {
+        if (!(distances[i] < length)) continue;
+        const float density = mean * std::exp(-mean * columns[i]) / whole;
+        light += medium.glow->at(way.point(distances[i])) * transmittance(medium, columns[i]) *
+                 (1 / (kPlaces * density));
+    }
+    return light * medium.absorption;
+}
+
 }  // namespace
 
 Rgb Medium::albedo() const {
@@ -54,57 +86,90 @@ Rgb Medium::albedo() const {
     return {share(scattering.r, t.r), share(scattering.g, t.g), share(scattering.b, t.b)};
 }
 
-Rgb transmittance(const Medium& medium, float distance) {
+MediumWay::MediumWay(const Medium& medium, Vec3 origin, Vec3 direction)
+    : density_(medium.density), origin_(origin), direction_(direction) {
+    constexpr float kNothingLeft = 32;  // exp(-32) is a millionth of a rounding
     const Rgb s = medium.extinction();
-    return {pass(s.r, distance), pass(s.g, distance), pass(s.b, distance)};
+    if (const float least = std::min({s.r, s.g, s.b}); least > 0) opaque_ = kNothingLeft / least;
 }
 
-Rgb emitted_along(const Medium& medium, float distance) {
-    Rgb sum;
-    const Rgb extinction = medium.extinction();
-    for (int c = 0; c < 3; ++c) {
-        if (!(medium.absorption[c] > 0 && medium.emission[c] > 0)) continue;
-        sum[c] = medium.absorption[c] / extinction[c] * medium.emission[c] *
-                 -std::expm1(-extinction[c] * distance);
+float MediumWay::column(float distance) const {
+    return density_ ? density_->column(origin_, direction_, distance, opaque_) : distance;
+}
+
+float MediumWay::density(float distance) const {
+    return density_ ? density_->at(origin_ + direction_ * distance) : 1.0f;
+}
+
+float MediumWay::distance(float column, float length) const {
+    if (density_) return density_->distance(origin_, direction_, length, column);
+    return column < length ? column : kInfinity;
+}
+
+void MediumWay::distances(std::span<const float> columns, float length,
+                          std::span<float> found) const {
+    if (density_) {
+        density_->distances(origin_, direction_, length, columns.data(), found.data(),
+                            columns.size());
+        return;
     }
-    return sum;
+    for (size_t i = 0; i < columns.size(); ++i) found[i] = distance(columns[i], length);
 }
 
-MediumEvent sample_event(const Medium& medium, float length, Rgb throughput, Vec2 u,
-                         const std::optional<LightBeside>& light) {
-    const Rgb through = transmittance(medium, length);
+Rgb transmittance(const Medium& medium, float column) {
+    const Rgb s = medium.extinction();
+    return {pass(s.r, column), pass(s.g, column), pass(s.b, column)};
+}
+
+Rgb emitted_along(const Medium& medium, const MediumWay& way, float length, float u) {
+    const float column = way.column(length);
+    return medium.glow ? glow_along(medium, way, column, length, u) : even_glow(medium, column);
+}
+
+MediumEvent sample_event(const Medium& medium, const MediumWay& way, float length, Rgb throughput,
+                         Vec2 u, const std::optional<LightBeside>& light) {
     const float all = sum(throughput);
-    if (!medium.scatters() || !(all > 0)) return {false, length, through};
+    if (!medium.scatters() || !(all > 0))
+        return {false, length, transmittance(medium, way.column(length))};
 
     const Rgb share = throughput * (1 / all), extinction = medium.extinction(),
               albedo = medium.albedo();
     // Find the part that is placed by the angle at the light
     std::optional<EvenAngles> angles;
     float by_angle = 0;
+    std::optional<Rgb> through;  // the transmittance of the whole way, which takes time
     if (light && std::isfinite(length)) {
+        through = transmittance(medium, way.column(length));
         angles.emplace(*light, length);
         const float nearest = std::clamp(light->along, 0.0f, length);
         if (!angles->is_empty())
-            by_angle = kMostByAngle * light->share * sum(share * albedo * (Rgb(1) - through)) *
-                       sum(share * transmittance(medium, nearest));
+            by_angle = kMostByAngle * light->share * sum(share * albedo * (Rgb(1) - *through)) *
+                       sum(share * transmittance(medium, way.column(nearest)));
     }
     const float by_distance = 1 - by_angle;
-    const auto scatter = [&](float distance) -> MediumEvent {
-        const Rgb value = medium.scattering * transmittance(medium, distance);
+    const auto scatter = [&](float distance, float column) -> MediumEvent {
+        const Rgb value =
+            medium.scattering * (way.density(distance) * transmittance(medium, column));
         float density = by_distance * sum(share * value);
         if (by_angle > 0) density += by_angle * angles->density(distance);
         return {true, distance, density > 0 ? value * (1 / density) : Rgb(0)};
     };
-    if (u.x < by_angle) return scatter(angles->sample(u.y));
+    if (u.x < by_angle) {
+        const float distance = angles->sample(u.y);
+        return scatter(distance, way.column(distance));
+    }
     // Draw the rest by a channel's exponential
     float v = (u.x - by_angle) / by_distance;
     int channel = 0;
     while (channel < 2 && v >= share[channel]) v -= share[channel++];
-    const bool tries = v < albedo[channel] * share[channel];  // rather than be absorbed
-    const float distance = tries ? -std::log1p(-u.y) / extinction[channel] : length;
-    if (tries && distance < length) return scatter(distance);
-    const float probability = by_distance * sum(share * (Rgb(1) - albedo * (Rgb(1) - through)));
-    return {false, length, probability > 0 ? through * (1 / probability) : Rgb(0)};
+    if (v < albedo[channel] * share[channel]) {  // rather than be absorbed
+        const float column = -std::log1p(-u.y) / extinction[channel];
+        const float distance = way.distance(column, length);
+        if (distance < length) return scatter(distance, column);
+    }
+    if (!through) through = transmittance(medium, way.column(length));
+    const float probability = by_distance * sum(share * (Rgb(1) - albedo * (Rgb(1) - *through)));
+    return {false, length, probability > 0 ? *through * (1 / probability) : Rgb(0)};
 }
 
 }  // namespace covtrace

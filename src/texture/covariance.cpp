@@ -1,9 +1,9 @@
 /// How fast textures vary: the covariance of their amplitude spectra per unit of (u, v).
 #include <cmath>
 
+#include "core/noise.h"
 #include "texture/graph.h"
 #include "texture/mapping.h"
-#include "texture/noise.h"
 #include "texture/spectra.h"
 
 namespace covtrace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/noise.h"
 #include "texture/mapping.h"
-#include "texture/noise.h"
 
 namespace covtrace {
 namespace {

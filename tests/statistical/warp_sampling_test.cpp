@@ -290,7 +290,7 @@ TEST(WarpSampling, DistancesInMedia) {
         Rng rng(hash_combine(9, uint64_t(&c - cases.data())));
         for (int i = 0; i < kSamples; ++i) {
             const MediumEvent e =
-                sample_event(c.medium, c.length, c.throughput, rng.next_2d(), c.light);
+                sample_event(c.medium, {}, c.length, c.throughput, rng.next_2d(), c.light);
             const size_t cell =
                 !e.scatters ? n + 1 : std::min<size_t>(n, size_t(e.distance / end * n));
             observed[cell] += 1;

@@ -282,7 +282,7 @@ TEST(SceneMaterials, MediaAreRead) {
         "\"float Lescale\" .5\n"
         "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"string preset\" \"Wholemilk\" "
         "\"float scale\" 10\n"
-        "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\n"
+        "MakeNamedMedium \"cloud\" \"string type\" \"cloud\" \"float frequency\" 0.5\n"
         "MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float "
         "density\" [ 1 2 ] \"rgb sigma_a\" [ 1 1 2 ]\n"
         "MakeNamedMedium \"dye\" \"string type\" \"rgbgrid\" \"integer nz\" 2 \"rgb sigma_a\" [ 1 "
@@ -300,12 +300,21 @@ TEST(SceneMaterials, MediaAreRead) {
     EXPECT_EQ(scene.media[1].emission, (Rgb{0.5f, 1, 2}));
     EXPECT_FLOAT_EQ(scene.media[2].sigma_s.g, 32.1f);
     EXPECT_FLOAT_EQ(scene.media[2].sigma_a.b, 0.14f);
-    EXPECT_TRUE(is_black(scene.media[3].sigma_a));
-    EXPECT_EQ(scene.media[4].sigma_a, (Rgb{1.5f, 1.5f, 3}));
-    EXPECT_EQ(scene.media[4].sigma_s, Rgb{1.5f});
+    EXPECT_EQ(scene.media[3].sigma_a, Rgb{1});
+    ASSERT_TRUE(scene.media[3].density);
+    EXPECT_EQ(scene.media[3].density->at({0.5f, 0, 0.5f}), 1);
+    EXPECT_EQ(scene.media[4].sigma_a, (Rgb{1, 1, 2}));
+    EXPECT_EQ(scene.media[4].sigma_s, Rgb{1});
+    ASSERT_TRUE(scene.media[4].density);
+    EXPECT_FLOAT_EQ(scene.media[4].density->at({0.25f, 0.5f, 0.5f}), 1);
+    EXPECT_FLOAT_EQ(scene.media[4].density->at({0.5f, 0.5f, 0.5f}), 1.5f);
+    EXPECT_FLOAT_EQ(scene.media[4].density->at({0.75f, 0.5f, 0.5f}), 2);
+    // Colours are the mean; cells have 9 and 15 of the mean extinction of 12
     EXPECT_EQ(scene.media[5].sigma_a, (Rgb{2, 3, 4}));
     EXPECT_EQ(scene.media[5].sigma_s, Rgb{1});
-    EXPECT_EQ(scene.warnings.size(), 4u) << warnings_of(scene);
+    EXPECT_FLOAT_EQ(scene.media[5].density->at({0.5f, 0.5f, 0.25f}), 9.0f / 12);
+    EXPECT_FLOAT_EQ(scene.media[5].density->at({0.5f, 0.5f, 0.75f}), 15.0f / 12);
+    EXPECT_EQ(scene.warnings.size(), 2u) << warnings_of(scene);
     EXPECT_TRUE(contains(warnings_of(scene), "did you mean \"Wholemilk\"")) << warnings_of(scene);
 }
 
@@ -357,6 +366,22 @@ TEST(SceneMaterials, ErrorsNameThePlace) {
         {"MakeNamedMedium \"m\" \"string type\" \"gas\"", "unknown medium \"gas\""},
         {"MakeNamedMedium \"m\"", "medium \"m\" has no type"},
         {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"", "expected \"float density\""},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" [1 -1] "
+         "\"integer ny\" 2",
+         "\"density\" must not be negative"},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 "
+         "\"point3 p1\" [1 0 1]",
+         "the box from \"p0\" to \"p1\" is flat"},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 "
+         "\"float temperature\" 1000 \"rgb Le\" [1 1 1]",
+         "both \"Le\" and \"temperature\""},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 "
+         "\"integer nz\" 0",
+         "\"nz\" must be greater than 0"},
+        {"MakeNamedMedium \"m\" \"string type\" \"rgbgrid\"", "expected \"rgb sigma_a\""},
+        {"MakeNamedMedium \"m\" \"string type\" \"nanovdb\"", "expected \"string filename\""},
+        {"MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"",
+         "x.nvdb"},
         {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 3 \"float density\" "
          "[ 1 2 ]",
          "has 2 values; expected nx * ny * nz"},

@@ -23,7 +23,7 @@ TEST(Medium, LightOfALampBesideARayHasABoundedWeight) {
     for (int i = 0; i < kSteps; ++i)
         for (int j = 0; j < kSteps; ++j) {
             const Vec2 u{(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps};
-            const MediumEvent e = sample_event(medium, length, Rgb(1), u, lamp);
+            const MediumEvent e = sample_event(medium, {}, length, Rgb(1), u, lamp);
             if (!e.scatters) continue;
             const double brought = double(e.weight.r) * fall_off(e.distance);
             sum += brought / (kSteps * kSteps);
@@ -51,7 +51,7 @@ TEST(Medium, ALampFarAwayInTheRaysDirectionKeepsTheWay) {
             for (int j = 0; j < kSteps; ++j) {
                 const Vec2 u{(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps};
                 const MediumEvent e =
-                    sample_event(medium, 1, Rgb(1), u, LightBeside{along, 0.5f, 1});
+                    sample_event(medium, {}, 1, Rgb(1), u, LightBeside{along, 0.5f, 1});
                 if (!e.scatters) continue;
                 scattered += double(e.weight.r) / (kSteps * kSteps);
                 places += double(e.weight.r * e.distance) / (kSteps * kSteps);
@@ -65,8 +65,8 @@ TEST(Medium, ALampFarAwayInTheRaysDirectionKeepsTheWay) {
 TEST(Medium, ALampThatIsNotSampledChangesNothing) {
     const Medium medium{{0.1f, 0.2f, 0}, {0.4f, 0.1f, 0.3f}, {}, 0};
     for (float u = 0.05f; u < 1; u += 0.1f) {
-        const MediumEvent alone = sample_event(medium, 3, {1, 0.5f, 0.2f}, {u, 1 - u}),
-                          beside = sample_event(medium, 3, {1, 0.5f, 0.2f}, {u, 1 - u},
+        const MediumEvent alone = sample_event(medium, {}, 3, {1, 0.5f, 0.2f}, {u, 1 - u}),
+                          beside = sample_event(medium, {}, 3, {1, 0.5f, 0.2f}, {u, 1 - u},
                                                 LightBeside{1, 0.1f, 0});
         EXPECT_EQ(alone.scatters, beside.scatters);
         EXPECT_EQ(alone.distance, beside.distance);

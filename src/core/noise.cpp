@@ -1,4 +1,4 @@
-#include "texture/noise.h"
+#include "core/noise.h"
 
 #include <algorithm>
 #include <array>
