@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from . import _covtrace
 from .arguments import choice_of, path_of, paths_of, shutter_of, text_of
 from .builder_calls import BuilderCalls
-from .scene_parts import AreaLight, Camera, Instance, Light, Material, Parts, Shape
+from .scene_parts import AreaLight, Camera, Closed, Instance, Light, Material, Parts, Shape
 from .scene_warnings import warn
 
 
@@ -22,7 +22,7 @@ def _read(file: str, search_paths: Iterable[str | os.PathLike[str]],
     return _covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths), shutter, *chosen)
 
 
-class Scene:
+class Scene(Closed):
     """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
     `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).

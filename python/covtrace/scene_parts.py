@@ -14,7 +14,20 @@ from .errors import UsageError
 Matrix = NDArray[numpy.float64]
 
 
-class Part:
+class Closed:
+    """Refuses attributes that its class has not: what is set as one would be lost without a word.
+    `_items` names an item in the message, for classes whose values are items."""
+
+    _items: str | None = None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_") and not hasattr(type(self), name):
+            elsewhere = f"; its values are items, such as [{self._items!r}]" if self._items else ""
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r} to set{elsewhere}")
+        super().__setattr__(name, value)
+
+
+class Part(Closed):
     """A part of a scene. Its values have the names of pbrt's parameters: `part["roughness"] = 0.2`.
 
     A value is a number or a colour (r, g, b), linear Rec.709; None where a texture varies it, or
@@ -49,7 +62,7 @@ class Part:
         return self._kind.replace("_", " ")
 
 
-class Placed:
+class Placed(Closed):
     """A part with a place: `to_world` is its (4, 4) matrix for column vectors; `end_to_world` that at
     the shutter's end, None where it rests."""
 
@@ -79,6 +92,7 @@ class Camera(Part, Placed):
     up and z forward in its own space."""
 
     _kind = "camera"
+    _items = "fov"
 
     def look_at(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> None:
         """Places it at `eye`. `UsageError` where `target` is the same point, or straight above or
@@ -100,6 +114,7 @@ class Material(Part):
     """A material. `kind` is pbrt's name of its model."""
 
     _kind = "material"
+    _items = "reflectance"
 
     @property
     def name(self) -> str:
@@ -117,6 +132,7 @@ class Light(Part, Placed):
     """A light that is no shape: "I" (radiant intensity) or "L" (radiance) by its kind."""
 
     _kind = "light"
+    _items = "I"
 
     @property
     def kind(self) -> str:
@@ -130,6 +146,7 @@ class AreaLight(Part):
     """The light of one or more shapes: "L", its radiance."""
 
     _kind = "area_light"
+    _items = "L"
 
 
 class Shape(Placed):

@@ -56,6 +56,20 @@ class Parts(unittest.TestCase):
     def setUp(self):
         self.scene = scene()
 
+    def test_attributes_that_are_none_are_refused(self):
+        # They were set in Python and changed no picture.
+        camera, metal = self.scene.camera, self.scene.materials["metal"]
+        for part, name, told in ((camera, "fov", r"its values are items, such as \['fov'\]"),
+                                 (metal, "reflectance", r"its values are items, such as \['reflectance'\]"),
+                                 (self.scene.lights[0], "I", "its values are items"), (self.scene.area_lights[0], "L", "its values are items"),
+                                 (self.scene.shapes[0], "matrix", "has no attribute 'matrix' to set$"),
+                                 (self.scene, "environment", "Scene has no attribute 'environment' to set$")):
+            with self.assertRaisesRegex(AttributeError, told):
+                setattr(part, name, (1, 0, 0))
+        self.scene.shapes[0].material = 1
+        camera.to_world = moved(0, 1, 6)
+        self.assertEqual(self.scene.shapes[0].material, 1)
+
     def test_the_extent_follows_the_shapes(self):
         # The floor's corners, the ball of radius 1 at x = 0.25 and the lamp of 0.5 at y = 3.
         numpy.testing.assert_allclose(self.scene.extent, [[-4, -1, -4], [4, 3.5, 4]], atol=1e-6)
