@@ -23,7 +23,7 @@ NOTHING_REPLACED = {
     "values of the file that mean nothing": (
         "is not known to", "is given twice", "without AttributeBegin", "is not a multiple of", "has another number of values",
         "moves the same property", "has no faces", "has no shape", "reach beyond the image", "the latter counts",
-        "the compressed mesh has", "a scale of zero hides", "has textures but no TEXCOORD"),
+        "the compressed mesh has", "expected a number", "a scale of zero hides", "has textures but no TEXCOORD"),
     "points and lines, drawn": ("points are shown as", "lines are shown as"),
     "as in pbrt-v4 and viewers": ("as in pbrt", "is cut to 1", "cut to 1"),
     "another way to the same image": ("path tracing takes its place", "is ignored: accelerator", "accelerator"),

@@ -302,6 +302,19 @@ double checked(const Document& document, const tinygltf::Value& value, double le
 
 }  // namespace
 
+double nearest(const Document& document, double value, double least, double most,
+               const std::string& place, WarningLog& log) {
+    if (!std::isfinite(value))
+        document.refuse(place, "expected a number " + range_text(least, most));
+    const double end = std::clamp(value, least, most);
+    constexpr double kRounding = 1e-5;  // of exporters that count in single precision
+    if (std::abs(value - end) > kRounding)
+        log.add(document.place(place), "expected a number " + range_text(least, most) + ", found " +
+                                           number_text(value) + "; " + number_text(end) +
+                                           " takes its place");
+    return end;
+}
+
 double number(const Document& document, const tinygltf::Value& object, const char* key,
               double otherwise, double least, double most, const std::string& place) {
     if (!object.Has(key)) return otherwise;

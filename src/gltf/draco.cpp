@@ -58,9 +58,8 @@ class DracoAccessors {
                                         " components, another number than its accessor");
         if (form.count != mesh_.num_points())
             log_.add(document_.place(place),
-                     "its accessor is said to have " + std::to_string(form.count) +
-                         " elements; the compressed mesh has " +
-                         std::to_string(mesh_.num_points()) + " vertices, which count");
+                     "its accessor is said to have another number of elements than the compressed "
+                     "mesh has vertices, which count");
         return entry->second = convert(form, *values, place);
     }
 

@@ -22,19 +22,15 @@ float reflectance_of(float eta) {
     return root * root;
 }
 
-Rgb rgb(const std::array<double, 3>& v) {
-    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
-
 }  // namespace
 
 void MaterialBuilder::read_index() {
     const auto* e = extension(material_.extensions, "KHR_materials_ior");
     if (!e) return;
-    constexpr double kAny = std::numeric_limits<double>::max();
-    const double ior = number(document_, *e, "ior", 1.5, 0, kAny, in("KHR_materials_ior"));
-    if (ior > 0 && ior < 1)
-        document_.refuse(in("KHR_materials_ior"), "expected an ior of 0 or at least 1");
+    const std::string place = in("KHR_materials_ior");
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    double ior = number(document_, *e, "ior", 1.5, 0, kLargest, place);
+    if (ior > 0) ior = nearest(document_, ior, 1, kLargest, place + ".ior", log_);
     // An ior of 0 stands for a border that reflects everything, as it does in the limit of large
     // ones.
     border_.eta =
@@ -46,7 +42,7 @@ void MaterialBuilder::read_specular() {
     const auto* e = extension(material_.extensions, "KHR_materials_specular");
     if (!e) return;
     const std::string place = in("KHR_materials_specular");
-    const auto factor = static_cast<float>(number(document_, *e, "specularFactor", 1, 0, 1, place));
+    const auto factor = share(*e, "specularFactor", 1, place);
     const Rgb tint = rgb(numbers<3>(document_, *e, "specularColorFactor", {1, 1, 1}, 0, place));
     const auto weight = use(texture_info(document_, *e, "specularTexture", place));
     const auto colour = use(texture_info(document_, *e, "specularColorTexture", place));
@@ -70,8 +66,7 @@ void MaterialBuilder::read_specular_glossiness() {
     const tinygltf::Value& e = *specular_glossiness();
     const std::string place = in(kSpecularGlossiness);
     const auto specular = numbers<3>(document_, e, "specularFactor", {1, 1, 1}, 0, place);
-    const auto glossiness =
-        static_cast<float>(number(document_, e, "glossinessFactor", 1, 0, 1, place));
+    const auto glossiness = share(e, "glossinessFactor", 1, place);
     const auto texture = use(texture_info(document_, e, "specularGlossinessTexture", place));
     const std::string here = place + ".specularGlossinessTexture";
     border_.normal_reflectance = textures_.colour(texture, rgb(specular), here);
@@ -85,12 +80,10 @@ void MaterialBuilder::read_anisotropy() {
     const auto* e = extension(material_.extensions, "KHR_materials_anisotropy");
     if (!e) return;
     const std::string place = in("KHR_materials_anisotropy");
-    const auto strength =
-        static_cast<float>(number(document_, *e, "anisotropyStrength", 0, 0, 1, place));
+    const auto strength = share(*e, "anisotropyStrength", 0, place);
     if (strength == 0) return;
     const auto texture = use(texture_info(document_, *e, "anisotropyTexture", place));
     const std::string here = place + ".anisotropyTexture";
-    constexpr double kAny = 1e30;
     tangent_rotation_ = static_cast<float>(std::remainder(
         number(document_, *e, "anisotropyRotation", 0, -kAny, kAny, place), 2 * M_PI));
     tangent_direction_ = textures_.linear(texture, here);

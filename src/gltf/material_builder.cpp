@@ -4,28 +4,11 @@
 #include <cmath>
 
 #include "gltf/extensions.h"
-#include "gltf/range_text.h"
 
 namespace covtrace::gltf {
 namespace {
 
 using Channel = ImageTexture::Channel;
-
-/// Checks a number that the library leaves unchecked: refuses it outside of [least, most].
-float in_range(const Document& document, double v, double least, double most,
-               const std::string& place) {
-    if (!(v >= least && v <= most))
-        document.refuse(place, "expected a number " + range_text(least, most));
-    return static_cast<float>(v);
-}
-
-Rgb colour(const Document& document, const std::vector<double>& v, size_t count, Rgb otherwise,
-           const std::string& place) {
-    if (v.empty()) return otherwise;
-    if (v.size() != count) document.refuse(place, "expected " + std::to_string(count) + " numbers");
-    return {in_range(document, v[0], 0, 1, place), in_range(document, v[1], 0, 1, place),
-            in_range(document, v[2], 0, 1, place)};
-}
 
 tinygltf::TextureInfo plain_info(const tinygltf::NormalTextureInfo& normal) {
     tinygltf::TextureInfo info;
@@ -46,8 +29,9 @@ Surface MaterialBuilder::build() {
         build_unlit();
         return surface_;
     }
-    surface_.is_seen_from_back =
-        material_.doubleSided || extension(material_.extensions, "KHR_materials_transmission");
+    surface_.is_seen_from_back = material_.doubleSided ||
+                                 extension(material_.extensions, "KHR_materials_transmission") ||
+                                 extension(material_.extensions, kDiffuseTransmission);
     read_emission();
     read_normal_map();
     base_ = tinted(
@@ -59,24 +43,43 @@ Surface MaterialBuilder::build() {
         return surface_;
     }
     const auto mr = use(pbr_.metallicRoughnessTexture);
-    widths_.u = widths_.v = squared(
-        mr, Channel::green, in_range(document_, pbr_.roughnessFactor, 0, 1, pbr("roughnessFactor")),
-        pbr("metallicRoughnessTexture"));
+    widths_.u = widths_.v =
+        squared(mr, Channel::green, within(pbr_.roughnessFactor, 0, 1, pbr("roughnessFactor")),
+                pbr("metallicRoughnessTexture"));
     read_anisotropy();
     read_index();
     read_specular();
     read_sheen();
     read_clearcoat();
-    const float metallic = in_range(document_, pbr_.metallicFactor, 0, 1, pbr("metallicFactor"));
+    const float metallic = within(pbr_.metallicFactor, 0, 1, pbr("metallicFactor"));
     surface_.material = metals_and_others(mr, metallic);
     return surface_;
+}
+
+float MaterialBuilder::within(double value, double least, double most, const std::string& place) {
+    return static_cast<float>(nearest(document_, value, least, most, place, log_));
+}
+
+float MaterialBuilder::share(const tinygltf::Value& object, const char* key, double otherwise,
+                             const std::string& place) {
+    return within(number(document_, object, key, otherwise, -kAny, kAny, place), 0, 1,
+                  place + "." + key);
+}
+
+Rgb MaterialBuilder::colour(const std::vector<double>& v, size_t count, double most, Rgb otherwise,
+                            const std::string& place) {
+    if (v.empty()) return otherwise;
+    if (v.size() != count)
+        document_.refuse(place, "expected " + std::to_string(count) + " numbers");
+    return {within(v[0], 0, most, place), within(v[1], 0, most, place),
+            within(v[2], 0, most, place)};
 }
 
 void MaterialBuilder::read_base() {
     if (const tinygltf::Value* e = specular_glossiness()) {
         const std::string place = in(kSpecularGlossiness);
-        const auto v = numbers<4>(document_, *e, "diffuseFactor", {1, 1, 1, 1}, 0, place);
-        for (const double one : v) in_range(document_, one, 0, 1, place + ".diffuseFactor");
+        auto v = numbers<4>(document_, *e, "diffuseFactor", {1, 1, 1, 1}, 0, place);
+        for (double& one : v) one = within(one, 0, 1, place + ".diffuseFactor");
         base_colour_ = {{float(v[0]), float(v[1]), float(v[2])},
                         float(v[3]),
                         texture_info(document_, *e, "diffuseTexture", place),
@@ -85,9 +88,9 @@ void MaterialBuilder::read_base() {
     }
     const auto& factor = pbr_.baseColorFactor;
     const std::string place = pbr("baseColorFactor");
-    base_colour_ = {colour(document_, factor, 4, Rgb(1), place), 1, pbr_.baseColorTexture,
+    base_colour_ = {colour(factor, 4, 1, Rgb(1), place), 1, pbr_.baseColorTexture,
                     pbr("baseColorTexture")};
-    if (factor.size() == 4) base_colour_.alpha = in_range(document_, factor[3], 0, 1, place);
+    if (factor.size() == 4) base_colour_.alpha = within(factor[3], 0, 1, place);
 }
 
 MaterialId MaterialBuilder::add(decltype(MaterialDescription::value) model) {
@@ -175,8 +178,7 @@ void MaterialBuilder::read_alpha() {
     if (mode == "OPAQUE" || mode.empty()) return;
     const float factor = base_colour_.alpha;
     if (mode == "MASK") {
-        read_mask(factor,
-                  in_range(document_, material_.alphaCutoff, 0, 1e30, place_ + ".alphaCutoff"));
+        read_mask(factor, within(material_.alphaCutoff, 0, 1e30, place_ + ".alphaCutoff"));
     } else if (mode == "BLEND") {
         const TextureUse info = use(base_colour_.texture);
         surface_.is_visible = factor > 0;
@@ -229,8 +231,9 @@ void MaterialBuilder::build_unlit() {
 }
 
 void MaterialBuilder::read_emission() {
+    // Writers of before KHR_materials_emissive_strength gave strong lights factors above 1.
     const Rgb factor =
-        colour(document_, material_.emissiveFactor, 3, Rgb(0), place_ + ".emissiveFactor");
+        colour(material_.emissiveFactor, 3, kAny, Rgb(0), place_ + ".emissiveFactor");
     double strength = 1;
     if (const auto* e = extension(material_.extensions, "KHR_materials_emissive_strength"))
         strength = number(document_, *e, "emissiveStrength", 1, 0, 1e30,
@@ -246,8 +249,8 @@ void MaterialBuilder::read_emission() {
 void MaterialBuilder::read_normal_map() {
     normal_map_ =
         textures_.linear(use(plain_info(material_.normalTexture)), place_ + ".normalTexture");
-    normal_scale_ = in_range(document_, material_.normalTexture.scale, -1e6, 1e6,
-                             place_ + ".normalTexture.scale");
+    normal_scale_ =
+        within(material_.normalTexture.scale, -1e6, 1e6, place_ + ".normalTexture.scale");
 }
 
 }  // namespace covtrace::gltf

@@ -1,6 +1,7 @@
 /// Private to this folder: one material on its way into the scene.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,10 @@
 #include "scene/scene_description.h"
 
 namespace covtrace::gltf {
+
+inline Rgb rgb(const std::array<double, 3>& v) {
+    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
 
 class MaterialBuilder {
   public:
@@ -35,6 +40,15 @@ class MaterialBuilder {
     void warn(const std::string& text) { log_.add(document_.place(place_), text); }
     std::string pbr(const char* key) const { return place_ + ".pbrMetallicRoughness." + key; }
     std::string in(const char* extension) const { return place_ + ".extensions." + extension; }
+
+    /// The number, or the nearer end of [least, most] with a warning.
+    float within(double value, double least, double most, const std::string& place);
+    /// A number from 0 to 1 of an extension's object; others as `within`.
+    float share(const tinygltf::Value& object, const char* key, double otherwise,
+                const std::string& place);
+    /// A colour of `count` numbers, each in [0, most] as `within`; `otherwise` where there is none.
+    Rgb colour(const std::vector<double>& v, size_t count, double most, Rgb otherwise,
+               const std::string& place);
 
     MaterialId add(decltype(MaterialDescription::value) model);
     MaterialId mix(MaterialId a, MaterialId b, TextureId amount);
@@ -99,7 +113,10 @@ class MaterialBuilder {
 
     void read_sheen();
     void read_clearcoat();
-    MaterialId opaque_dielectric() { return add(dielectric(widths_)); }
+    /// What is neither metal nor clear; of KHR_materials_diffuse_transmission a mixture with a
+    /// surface that lets light through diffusely, whose share has no highlights.
+    MaterialId opaque_dielectric();
+    bool has_thickness(const tinygltf::Value& volume) const;
 
     /// Makes the glass of KHR_materials_transmission: a body with a volume refracts, a surface
     /// without is a pane.
@@ -110,7 +127,10 @@ class MaterialBuilder {
     MaterialId dielectric_surface();
     MaterialId metals_and_others(const TextureUse& texture, float metallic);
 
+    /// Stands for no limit.
+    static constexpr double kAny = 1e30;
     static constexpr const char* kClearcoatNormal = "clearcoatNormalTexture";
+    static constexpr const char* kDiffuseTransmission = "KHR_materials_diffuse_transmission";
     static constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
     /// Largest roughness of panes that are rendered clear: their blur is below 1/400 radian.
     static constexpr double kClearRoughness = 0.05;

@@ -12,12 +12,9 @@ void MaterialBuilder::read_sheen() {
     const auto* e = extension(material_.extensions, "KHR_materials_sheen");
     if (!e) return;
     const std::string place = in("KHR_materials_sheen");
-    const auto factor = numbers<3>(document_, *e, "sheenColorFactor", {0, 0, 0}, 0, place);
-    const Rgb colour{static_cast<float>(factor[0]), static_cast<float>(factor[1]),
-                     static_cast<float>(factor[2])};
+    const Rgb colour = rgb(numbers<3>(document_, *e, "sheenColorFactor", {0, 0, 0}, 0, place));
     if (is_black(colour)) return;
-    const auto roughness =
-        static_cast<float>(number(document_, *e, "sheenRoughnessFactor", 0, 0, 1, place));
+    const auto roughness = share(*e, "sheenRoughnessFactor", 0, place);
     sheen_ =
         SheenLayer{textures_.colour(use(texture_info(document_, *e, "sheenColorTexture", place)),
                                     colour, place + ".sheenColorTexture"),
@@ -29,11 +26,9 @@ void MaterialBuilder::read_clearcoat() {
     const auto* e = extension(material_.extensions, "KHR_materials_clearcoat");
     if (!e) return;
     const std::string place = in("KHR_materials_clearcoat");
-    const auto factor =
-        static_cast<float>(number(document_, *e, "clearcoatFactor", 0, 0, 1, place));
+    const auto factor = share(*e, "clearcoatFactor", 0, place);
     if (factor == 0) return;
-    const auto roughness =
-        static_cast<float>(number(document_, *e, "clearcoatRoughnessFactor", 0, 0, 1, place));
+    const auto roughness = share(*e, "clearcoatRoughnessFactor", 0, place);
     ClearcoatLayer coat;
     coat.weight = textures_.channel(use(texture_info(document_, *e, "clearcoatTexture", place)),
                                     Channel::red, factor, place + ".clearcoatTexture");
@@ -42,7 +37,6 @@ void MaterialBuilder::read_clearcoat() {
     const auto normal = texture_info(document_, *e, kClearcoatNormal, place);
     if (normal.index >= 0) {
         const std::string here = place + "." + kClearcoatNormal;
-        constexpr double kAny = 1e6;
         coat.normal_map = textures_.linear(use(normal), here);
         coat.normal_scale = static_cast<float>(
             number(document_, e->Get(kClearcoatNormal), "scale", 1, -kAny, kAny, here));

@@ -51,8 +51,7 @@ ConductorMaterial MaterialBuilder::metal() const {
 
 MaterialId MaterialBuilder::glass() {
     const auto* volume = extension(material_.extensions, "KHR_materials_volume");
-    const bool has_volume = volume && number(document_, *volume, "thicknessFactor", 0, 0, 1e30,
-                                             in("KHR_materials_volume")) > 0;
+    const bool has_volume = volume && has_thickness(*volume);
     const bool is_rough =
         pbr_.metallicRoughnessTexture.index >= 0 || pbr_.roughnessFactor > kClearRoughness;
     if (has_volume) read_absorption(*volume);
@@ -80,8 +79,10 @@ MaterialId MaterialBuilder::glass() {
 void MaterialBuilder::read_absorption(const tinygltf::Value& volume) {
     const std::string place = in("KHR_materials_volume");
     const auto kept = numbers<3>(document_, volume, "attenuationColor", {1, 1, 1}, 0, place);
-    const double distance =
-        number(document_, volume, "attenuationDistance", 1e30, 1e-9, 1e30, place);
+    // Some writers say 0 where they mean that nothing is absorbed, which readers take as such.
+    const double said = number(document_, volume, "attenuationDistance", kAny, 0, kAny, place);
+    constexpr double kLeastDistance = 1e-9;
+    const double distance = said > 0 ? std::max(said, kLeastDistance) : kAny;
     Rgb sigma;
     for (int c = 0; c < 3; ++c) {
         constexpr double kLeast = 1e-6;  // darker than any display shows
@@ -93,17 +94,41 @@ void MaterialBuilder::read_absorption(const tinygltf::Value& volume) {
     surface_.inside = static_cast<MediumId>(scene_.media.size() - 1);
 }
 
+MaterialId MaterialBuilder::opaque_dielectric() {
+    const MaterialId reflecting = add(dielectric(widths_));
+    const auto* e = extension(material_.extensions, kDiffuseTransmission);
+    const std::string place = in(kDiffuseTransmission);
+    const float factor = e ? share(*e, "diffuseTransmissionFactor", 0, place) : 0;
+    if (factor == 0) return reflecting;
+    const auto* volume = extension(material_.extensions, "KHR_materials_volume");
+    if (volume && has_thickness(*volume)) read_absorption(*volume);
+    const Rgb tint =
+        rgb(numbers<3>(document_, *e, "diffuseTransmissionColorFactor", {1, 1, 1}, 0, place));
+    DiffuseTransmissionMaterial m;
+    m.reflectance = textures_.constant(0);
+    m.transmittance =
+        textures_.colour(use(texture_info(document_, *e, "diffuseTransmissionColorTexture", place)),
+                         tint, place + ".diffuseTransmissionColorTexture");
+    const auto amount = use(texture_info(document_, *e, "diffuseTransmissionTexture", place));
+    return mix(
+        reflecting, add(m),
+        textures_.channel(amount, Channel::alpha, factor, place + ".diffuseTransmissionTexture"));
+}
+
+bool MaterialBuilder::has_thickness(const tinygltf::Value& volume) const {
+    return number(document_, volume, "thicknessFactor", 0, 0, 1e30, in("KHR_materials_volume")) > 0;
+}
+
 MaterialId MaterialBuilder::dielectric_surface() {
     const auto* e = extension(material_.extensions, "KHR_materials_transmission");
     const std::string place = in("KHR_materials_transmission");
-    const double factor = e ? number(document_, *e, "transmissionFactor", 0, 0, 1, place) : 0.0;
+    const float factor = e ? share(*e, "transmissionFactor", 0, place) : 0;
     if (factor == 0) return opaque_dielectric();
     const auto info = use(texture_info(document_, *e, "transmissionTexture", place));
     const MaterialId clear = glass();
     if (factor == 1 && info.index < 0) return clear;
     return mix(opaque_dielectric(), clear,
-               textures_.channel(info, Channel::red, static_cast<float>(factor),
-                                 place + ".transmissionTexture"));
+               textures_.channel(info, Channel::red, factor, place + ".transmissionTexture"));
 }
 
 MaterialId MaterialBuilder::metals_and_others(const TextureUse& texture, float metallic) {

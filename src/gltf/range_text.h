@@ -6,6 +6,13 @@
 
 namespace covtrace::gltf {
 
+/// The number with up to 6 digits, as in "1.5".
+inline std::string number_text(double v) {
+    std::ostringstream text;
+    text << v;
+    return text.str();
+}
+
 /// Text such as "from 0 to 1", or "of at least 0" where `most` is 1e30, which stands for no limit.
 inline std::string range_text(double least, double most) {
     std::ostringstream text;

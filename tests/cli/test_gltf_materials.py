@@ -61,14 +61,14 @@ BLACK = {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor"
 
 
 class GltfMaterials(CliTest):
-    def seen(self, material, v, l, **more):
+    def seen(self, material, v, l, spp=4, **more):
         self.write("a.gltf", lit_square(material, v, l, **more))
-        result = self.run_program("render", "a.gltf", "-o", "a.exr", "--method", "uniform", "--spp", "4", "--resolution", "4x4", "--max-depth", "1",
-                                  "--progress", "none")
+        result = self.run_program("render", "a.gltf", "-o", "a.exr", "--method", "uniform", "--spp", str(spp), "--resolution", "4x4",
+                                  "--max-depth", "1", "--progress", "none")
         self.assertEqual(result.code, DONE, result)
         self.assertNotIn("left out", result.stderr)
         pixels = exr.read(self.folder / "a.exr").pixels
-        return [pixels[c][5] for c in "RGB"]
+        return [sum(pixels[c]) / 16 for c in "RGB"]
 
     def assert_close(self, found, expected, relative, about):
         for a, b in zip(found, expected):
@@ -106,6 +106,20 @@ class GltfMaterials(CliTest):
             found = self.seen({"pbrMetallicRoughness": {"roughnessFactor": 0.3},
                                "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.8, "anisotropyRotation": 0.5}}}, v, l, uv=uv)
             self.assert_close(found, [ggx(v, l, 0.09 + 0.91 * 0.64, 0.09, tangent) * l[2]] * 3, 0.03, uv)
+
+    def test_diffuse_transmission(self):
+        colour, factor = [0.9, 0.5, 0.1], 0.6
+        half = png(2, 2, [(0, 0, 0, 128)] * 4)
+        matt = {"KHR_materials_specular": {"specularFactor": 0}}
+        for images, share in (([], factor), ([half], factor * 128 / 255)):
+            extension = {"diffuseTransmissionFactor": factor, "diffuseTransmissionColorFactor": colour}
+            if images:
+                extension["diffuseTransmissionTexture"] = {"index": 0}
+            material = {"pbrMetallicRoughness": BLACK, "extensions": matt | {"KHR_materials_diffuse_transmission": extension}}
+            for v, l in ((direction(0, 0), direction(0, 180)), (direction(30, 40), direction(80, 120)), (direction(0, 140), direction(0, 20))):
+                expected = [share * c / math.pi * abs(l[2]) for c in colour]
+                self.assert_close(self.seen(material, v, l, spp=2048, images=images), expected, 0.03, (v, l))
+            self.assert_close(self.seen(material, *PAIRS[1], images=images), [0, 0, 0], 0, PAIRS[1])
 
     def test_specular(self):
         colour, factor, ior = [1, 0.5, 0.1], 0.6, 1.7

@@ -116,13 +116,6 @@ TEST(GltfBorder, SpecularGlossinessTakesThePlaceOfMetallicRoughness) {
     EXPECT_EQ(roughness.encoding, ImageTexture::Encoding::linear);
     EXPECT_EQ(roughness.scale, 0.75f);
     EXPECT_TRUE(roughness.invert);
-    EXPECT_TRUE(contains(
-        failure_of([&] {
-            with_extensions(
-                {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {1, 2, 0, 1}}}}});
-        }).message,
-        "materials[0].extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor: expected a "
-        "number from"));
 }
 
 TEST(GltfBorder, AnisotropyWidensTheTangentsSide) {
