@@ -8,7 +8,9 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/failure.h"
@@ -40,10 +42,23 @@ bool is_option(const std::string& argument) {
     return argument.size() > 1 && argument.front() == '-';
 }
 
+/// Says that a word in the place of a command is none.
+std::string explain_command(const CLI::App& app, const std::string& word) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(word, ignored))
+        return covtrace::path_in_quotes(word) +
+               " is no command; 'covtrace render FILE' renders a scene";
+    std::vector<std::string> known;
+    for (const CLI::App* c : app.get_subcommands(nullptr)) known.push_back(c->get_name());
+    return "unknown command " + covtrace::in_quotes(word) + covtrace::did_you_mean(word, known);
+}
+
 /// The reason why the command line is wrong; CLI11 itself does not name a command that it does not
 /// know, and takes the value of an option that it does not know for the next argument.
 std::string explain(const CLI::App& app, const CLI::ParseError& e) {
     using covtrace::did_you_mean, covtrace::in_quotes;
+    const std::vector<std::string> before = app.remaining();  // the command
+    if (!before.empty() && !is_option(before.front())) return explain_command(app, before.front());
     const std::vector<CLI::App*> commands = app.get_subcommands();
     const CLI::App& command = commands.empty() ? app : *commands.front();
     const std::vector<std::string> unknown = command.remaining();
@@ -54,9 +69,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
             for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
         return "unknown option " + in_quotes(*option) + did_you_mean(*option, known);
     }
-    if (!commands.empty() || unknown.empty()) return e.what();
-    for (const CLI::App* c : app.get_subcommands(nullptr)) known.push_back(c->get_name());
-    return "unknown command " + in_quotes(unknown.front()) + did_you_mean(unknown.front(), known);
+    return e.what();
 }
 
 int run(int argc, char** argv) {

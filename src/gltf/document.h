@@ -62,8 +62,8 @@ const T& at(const Document& document, const std::vector<T>& list, int index,
 
 /// The extension of that name, null where there is none or it is no object.
 const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const char* name);
-/// What a file says, or the nearer end of [least, most] with a warning where it lies outside of
-/// them; rounding errors need no warning. Refuses what is not finite.
+/// The value, or the nearer end of [least, most] with a warning where it lies outside of them;
+/// rounding errors need no warning. Refuses what is not finite.
 double nearest(const Document& document, double value, double least, double most,
                const std::string& place, WarningLog& log);
 /// A number of an extension's object. Refuses other types and values outside [least, most].

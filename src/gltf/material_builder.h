@@ -113,8 +113,8 @@ class MaterialBuilder {
 
     void read_sheen();
     void read_clearcoat();
-    /// What is neither metal nor clear; of KHR_materials_diffuse_transmission a mixture with a
-    /// surface that lets light through diffusely, whose share has no highlights.
+    /// The part that is neither metal nor clear; with KHR_materials_diffuse_transmission a mixture
+    /// with a surface that lets light through diffusely, whose share has no highlights.
     MaterialId opaque_dielectric();
     bool has_thickness(const tinygltf::Value& volume) const;
 

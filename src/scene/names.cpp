@@ -55,8 +55,14 @@ std::string listed(const std::vector<std::string>& names) {
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     if (name.size() > kLongestExcerpt) return {};
     const std::string wanted = lower(name);
+    // Beginnings of three letters and more, such as "--env", are nearer than words of their length
+    const bool is_beginning = std::ranges::count_if(wanted, [](char c) { return c != '-'; }) >= 3;
     std::vector<std::pair<size_t, const std::string*>> near;
     for (const std::string& c : candidates) {
+        if (is_beginning && lower(c).starts_with(wanted)) {
+            near.emplace_back(0, &c);
+            continue;
+        }
         if (c.size() > name.size() + 3 || name.size() > c.size() + 3) continue;
         const size_t d = edit_distance(wanted, lower(c));
         if (d <= std::max<size_t>(1, (wanted.size() + 2) / 3)) near.emplace_back(d, &c);

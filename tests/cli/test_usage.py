@@ -57,6 +57,13 @@ class WrongCommandLines(CliTest):
         self.assert_fails(self.run_program("paint"), USAGE, 'unknown command "paint"')
         self.assert_fails(self.run_program("rendr"), USAGE, 'did you mean "render"?')
         self.assert_fails(self.run_program("--frobnicate"), USAGE, 'unknown option "--frobnicate"')
+        self.assert_fails(self.run_program("help", "render"), USAGE, 'unknown command "help"')
+        self.write("scene.pbrt", TINY)
+        self.assert_fails(self.run_program("scene.pbrt"), USAGE, "\"scene.pbrt\" is no command; 'covtrace render FILE' renders a scene")
+
+    def test_beginnings_of_options_are_recognised(self):
+        self.assert_fails(self.run_program("render", "scene.pbrt", "--env", "1"), USAGE,
+                          'unknown option "--env"; did you mean "--environment" or "--environment-rotation"?')
 
     def test_missing_and_superfluous_arguments(self):
         self.write("scene.pbrt", TINY)
