@@ -76,6 +76,14 @@ TEST(GltfOutlines, MayLackALittleAndNotMuch) {
     EXPECT_FALSE(is_outline(shell(inside_out(card), coloured(0.01))));
 }
 
+TEST(GltfOutlines, AreNoSheetsThatFaceEachOther) {
+    // Two squares apart, as the underside of a seat and the top of what is below: they have no area
+    // in the mean and a negative volume, and enclose little.
+    const std::vector<uint16_t> box = inside_out(box_triangles());
+    const std::vector<uint16_t> sheets(box.begin(), box.begin() + 12);
+    EXPECT_FALSE(is_outline(shell(sheets, coloured(0.01))));
+}
+
 TEST(GltfOutlines, AreOutlinesOnMirroredNodes) {
     GltfFile file = shell(inside_out(box_triangles()), coloured(0.01));
     file.root["nodes"][0]["scale"] = {-1, 1, 1};
