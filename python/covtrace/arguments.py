@@ -11,7 +11,11 @@ from .errors import UsageError
 
 
 def refuse(name: str, value: Any, expected: str) -> NoReturn:
-    raise UsageError(f"{name} is {value!r}; expected {expected}")
+    shown = " ".join(repr(value).split())  # of arrays repr has lines, up to thousands
+    longest = 120
+    if len(shown) > longest:
+        shown = shown[:longest] + "…"
+    raise UsageError(f"{name} is {shown}; expected {expected}")
 
 
 def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path",

@@ -159,6 +159,12 @@ Shape "sphere" "float radius" 3
                 covtrace.render(scene, **wrong)
 
 
+    def test_what_is_wrong_is_told_in_a_line(self):
+        with self.assertRaises(covtrace.UsageError) as raised:
+            covtrace.render(covtrace.Scene.from_string(scenes.LIT), environment=numpy.ones((8, 16, 3)))
+        self.assertRegex(str(raised.exception), r"\Aenvironment is array\(\[\[\[1\., 1\., 1\.\],[^\n]{0,120}…; expected an image's path[^\n]*\Z")
+
+
 class Idle(unittest.TestCase):
     def test_an_option_that_changes_nothing_is_told(self):
         for name, value in (("even_counts", True), ("progressive", True), ("cov_spp", 1), ("max_spp", 4), ("density", "thesis")):
