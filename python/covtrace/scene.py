@@ -110,8 +110,8 @@ class Scene(Closed):
     @property
     def materials(self) -> Parts:
         """All materials, by index or name: `scene.materials["floor"]["roughness"] = 0.2`."""
-        return Parts("material", lambda i: Material(self._description, i),
-                     [name for name, _ in self._description.parts()["materials"]])
+        return Parts("material", lambda *indices: Material(self._description, *indices),
+                     [name for name, _ in self._description.parts()["materials"]], joins=True)
 
     @property
     def lights(self) -> Parts:

@@ -40,14 +40,17 @@ class Part(Closed):
         self._description = description
         self._index = index
 
+    def _values(self) -> dict[str, float | tuple[float, float, float] | None]:
+        return dict(self._description.values(self._kind, self._index))
+
     def keys(self) -> list[str]:
-        return list(self._description.values(self._kind, self._index))
+        return list(self._values())
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.keys())
 
     def __getitem__(self, name: str) -> float | tuple[float, float, float] | None:
-        values = self._description.values(self._kind, self._index)
+        values = self._values()
         if name not in values:
             raise KeyError(f"there is no value {name!r}; there are {', '.join(values)}")
         return values[name]
@@ -56,7 +59,7 @@ class Part(Closed):
         self._description.set_value(self._kind, self._index, name, value)
 
     def __repr__(self) -> str:
-        return f"<{self._title()} {dict(self._description.values(self._kind, self._index))}>"
+        return f"<{self._title()} {self._values()}>"
 
     def _title(self) -> str:
         return self._kind.replace("_", " ")
@@ -111,10 +114,28 @@ class Camera(Part, Placed):
 
 
 class Material(Part):
-    """A material. `kind` is pbrt's name of its model."""
+    """A material. `kind` is pbrt's name of its model. By its name one of glTF may be several: a metal,
+    the rest, and their mixture by "amount". A value is then that of the first that has it, and is set
+    in all that have it; `kind` is the first one's."""
 
     _kind = "material"
     _items = "reflectance"
+
+    def __init__(self, description: _covtrace.SceneDescription, *indices: int) -> None:
+        super().__init__(description, indices[0])
+        self._indices = indices
+
+    def _values(self) -> dict[str, float | tuple[float, float, float] | None]:
+        values: dict[str, float | tuple[float, float, float] | None] = {}
+        for i in self._indices:
+            for name, value in self._description.values(self._kind, i).items():
+                values.setdefault(name, value)
+        return values
+
+    def __setitem__(self, name: str, value: ArrayLike) -> None:
+        having = [i for i in self._indices if name in self._description.values(self._kind, i)]
+        for i in having or [self._index]:  # the first tells that there is none
+            self._description.set_value(self._kind, i, name, value)
 
     @property
     def name(self) -> str:
@@ -125,7 +146,8 @@ class Material(Part):
         return self._description.parts()["materials"][self._index][1]
 
     def _title(self) -> str:
-        return f"material {self.name!r} ({self.kind})"
+        kinds = [self._description.parts()["materials"][i][1] for i in self._indices]
+        return f"material {self.name!r} ({', '.join(kinds)})"
 
 
 class Light(Part, Placed):
@@ -177,12 +199,12 @@ class Instance(Placed):
 
 class Parts(Sequence[Any]):
     """All parts of one kind; those with names are found by their names, too. `kind`: what messages
-    call one of them."""
+    call one of them. `joins`: whether `make` takes all indices of a name, or else the first."""
 
     _ELSEWHERE = {"light": " of its own; `environment` of render takes the place of what lights it instead"}
 
-    def __init__(self, kind: str, make: Callable[[int], Any], names: Sequence[str] | int) -> None:
-        self._kind, self._make = kind, make
+    def __init__(self, kind: str, make: Callable[..., Any], names: Sequence[str] | int, joins: bool = False) -> None:
+        self._kind, self._make, self._joins = kind, make, joins
         self._names = [""] * names if isinstance(names, int) else list(names)
 
     def __len__(self) -> int:
@@ -194,7 +216,8 @@ class Parts(Sequence[Any]):
                 names = dict.fromkeys(n for n in self._names if n)
                 known = f"the {self._kind}s are {', '.join(map(repr, names))}" if names else f"the {self._kind}s have no names"
                 raise KeyError(f"there is no {self._kind} {key!r}; {known}")
-            return self._make(self._names.index(key))
+            found = [i for i, name in enumerate(self._names) if name == key]
+            return self._make(*(found if self._joins else found[:1]))
         if isinstance(key, slice):
             return [self._make(i) for i in range(*key.indices(len(self)))]
         try:

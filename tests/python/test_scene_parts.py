@@ -239,14 +239,14 @@ class StandIns(unittest.TestCase):
 
 
 class Gltf(unittest.TestCase):
-    def test_look_at_does_not_mirror(self):
-        """A camera of glTF, whose world is right-handed: as the keyword `camera` of render shows it."""
+    def scene_of(self, material):
+        """A triangle of that material before a camera."""
         positions = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
         root = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "scene": 0,
                 "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 5]}],
                 "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
                 "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
-                "materials": [{"name": "lamp", "emissiveFactor": [1, 1, 1], "doubleSided": True}],
+                "materials": [material],
                 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
                 "bufferViews": [{"buffer": 0, "byteLength": 36}],
                 "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(positions).decode()}]}
@@ -254,7 +254,29 @@ class Gltf(unittest.TestCase):
             file = f"{folder}/a.gltf"
             with open(file, "w", encoding="utf-8") as out:
                 json.dump(root, out)
-            scene = covtrace.Scene(file)
+            return covtrace.Scene(file)
+
+    def test_a_name_stands_for_all_parts_of_a_material(self):
+        # A metal, what is none, and their mixture.
+        scene = self.scene_of({"name": "paint", "pbrMetallicRoughness": {"metallicFactor": 0.5, "roughnessFactor": 1}})
+        paint = scene.materials["paint"]
+        self.assertRegex(repr(paint), r"^<material 'paint' \(coateddiffuse, conductor, mix\) {")
+        self.assertEqual(paint["amount"], 0.5)
+        paint["reflectance"] = 1, 0, 0
+        self.assertEqual([scene.materials[i]["reflectance"] for i in range(2)], [(1, 0, 0)] * 2)
+        paint["amount"] = 1
+        found = covtrace.render(scene, spp=4, resolution=(24, 16), method="uniform", environment=1)
+        self.assertGreater(found.rgb[..., 0].max(), 0.5)
+        at = found["albedo"][..., 0] > 0.5
+        self.assertTrue(at.any())
+        self.assertLess(found["albedo"][..., 1][at].max(), 0.2)  # metals are white at grazing angles alone
+        for action in (lambda: paint["colour"], lambda: paint.__setitem__("colour", 1)):
+            with self.assertRaisesRegex(Exception, "colour"):
+                action()
+
+    def test_look_at_does_not_mirror(self):
+        """A camera of glTF, whose world is right-handed: as the keyword `camera` of render shows it."""
+        scene = self.scene_of({"name": "lamp", "emissiveFactor": [1, 1, 1], "doubleSided": True})
         options = {"spp": 4, "resolution": (24, 16), "environment": 0}
         there = {"eye": (3, 1, 4), "target": (0.3, 0.3, 0)}
         expected = covtrace.render(scene, **options, camera={**there, "fov": scene.camera["fov"]})
