@@ -275,8 +275,13 @@ void build_integrator(Entity& e, BuildContext& context) {
     if (std::find(known.begin(), known.end(), e.type) == known.end())
         throw unknown_type_error(e.where, "integrator", e.type, known);
     if (e.type != "path" && e.type != "volpath") {
-        context.log.add(e.where, "integrator " + in_quotes(e.type) +
-                                     " is not supported; path tracing takes its place");
+        // These trace light from lights without extent, too, which no path from the camera meets
+        const bool traces_light =
+            e.type == "bdpt" || e.type == "mlt" || e.type == "sppm" || e.type == "lightpath";
+        context.log.add(
+            e.where,
+            "integrator " + in_quotes(e.type) + " is not supported; path tracing takes its place" +
+                (traces_light ? ", without caustics of point, spot and distant lights" : ""));
         p.ignore_all();
     }
     const std::vector<std::string> volumetric{"volpath", "simplevolpath", "bdpt", "mlt"};

@@ -43,7 +43,7 @@ class Warnings(CliTest):
         for directive, fragment in [
             ('Camera "realistic" "string lensfile" "lens.dat"', "realistic"),
             ('Film "spectral"\n"integer xresolution" 16 "integer yresolution" 8', "spectral"),
-            ('Integrator "bdpt"', "bdpt"),
+            ('Integrator "bdpt"', "without caustics of point, spot and distant lights"),
             ('Integrator "sppm"', "sppm"),
             ('Integrator "path" "integer maxdeth" 3', "maxdeth"),
             ('Accelerator "octree"', "octree"),
