@@ -1,6 +1,8 @@
 """The part of a pbrt file before WorldBegin: the camera of a scene or of a viewport, film, sampler and integrator."""
 
-from mathutils import Matrix
+import math
+
+from mathutils import Matrix, Vector
 
 from .export_shaders import numbers
 from .placement import placement
@@ -8,9 +10,23 @@ from .placement import placement
 # Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
 TURN = Matrix.Diagonal((1, 1, -1, 1))
 
+# Blender's panoramas have -z in the middle and x to the right of it, pbrt's -x and -z; both have y up.
+TURN_OF_PANORAMAS = Matrix(((0, 0, 1, 0), (0, 1, 0, 0), (-1, 0, 0, 0), (0, 0, 0, 1)))
 
-def _world_to_camera(matrix):
-    return TURN @ matrix.normalized().inverted()
+
+def _world_to_camera(matrix, turn=TURN):
+    return turn @ matrix.normalized().inverted()
+
+
+def _is_whole_panorama(data):
+    """Whether a camera shows all directions, at even angles along both sides of the frame."""
+    of = data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)  # Blender 5 has them itself
+    whole = {"latitude_min": -0.5, "latitude_max": 0.5, "longitude_min": -1, "longitude_max": 1}
+    return getattr(of, "panorama_type", "") == "EQUIRECTANGULAR" and \
+        all(abs(getattr(of, name) - math.pi * share) < 1e-4 for name, share in whole.items())
+
+
+KINDS = {"PERSP": "perspective", "ORTHO": "orthographic", "PANO": "spherical"}
 
 
 def _settings(scene):
@@ -61,28 +77,43 @@ class SceneCamera:
 
     def pixel(self):
         """(width of a pixel in _window's unit, whether it grows with the distance)."""
+        if self._object().data.type == "PANO":
+            return 2 * math.pi / self.size[0], True
         x0, x1, _, _ = self._window()
         return (x1 - x0) / self.size[0], self._object().data.type != "ORTHO"
+
+    def clip_range(self):
+        """(Clip Start, Clip End) along the axis of sight; None of panoramas."""
+        data = self._object().data
+        return None if data.type == "PANO" else (data.clip_start, data.clip_end)
+
+    def rays_to_near(self, count):
+        """count x count pairs of a start and a way to Clip Start, in the camera's space, of rays across the whole frame."""
+        x0, x1, y0, y1 = self._window()
+        near, is_perspective = self._object().data.clip_start, self._object().data.type == "PERSP"
+        shares = [k / (count - 1) for k in range(count)]
+        for place in (Vector((x0 + s * (x1 - x0), y0 + t * (y1 - y0), 0)) for s in shares for t in shares):
+            yield (Vector(), near * (place + Vector((0, 0, -1)))) if is_perspective else (place, Vector((0, 0, -near)))
 
     def text(self, shutter=None, end=None):
         """shutter: (open, close) in frames; end: its matrix at the closing, where it moves."""
         data = self._object().data
-        if data.type == "PANO":
-            raise RuntimeError("covtrace: panoramic cameras are not supported")
+        if data.type not in KINDS or data.type == "PANO" and not _is_whole_panorama(data):
+            raise RuntimeError("covtrace: of panoramic cameras only equirectangular ones of all directions are supported")
         times = f"TransformTimes {shutter[0]:.9g} {shutter[1]:.9g}\n" if shutter else ""
-        place = placement("Transform", _world_to_camera(self.matrix()), _world_to_camera(end) if end else None)
-        is_perspective = data.type == "PERSP"
-        parameters = [f'"float screenwindow" [{numbers(self._window())}]']
-        if is_perspective:
+        turn = TURN_OF_PANORAMAS if data.type == "PANO" else TURN
+        place = placement("Transform", _world_to_camera(self.matrix(), turn), _world_to_camera(end, turn) if end else None)
+        parameters = ['"string mapping" "equirectangular"'] if data.type == "PANO" else [f'"float screenwindow" [{numbers(self._window())}]']
+        if data.type == "PERSP":
             parameters.append('"float fov" 90')
         if shutter:
             parameters.append(f'"float shutteropen" {shutter[0]:.9g} "float shutterclose" {shutter[1]:.9g}')
-        if data.dof.use_dof:
-            parameters.append(self._lens(data, is_perspective))
+        if data.dof.use_dof and data.type != "PANO":
+            parameters.append(self._lens(data, data.type == "PERSP"))
         x0, y0, x1, y1 = self.region
         # The exposure's length is no brightness in Blender.
         iso = 100 / (shutter[1] - shutter[0]) if shutter else 100
-        return (times + place + f'Camera "{"perspective" if is_perspective else "orthographic"}" {" ".join(parameters)}\n'
+        return (times + place + f'Camera "{KINDS[data.type]}" {" ".join(parameters)}\n'
                 f'Film "rgb" "integer xresolution" {self.size[0]} "integer yresolution" {self.size[1]} '
                 f'"float iso" {iso:.9g} "integer pixelbounds" [{x0} {x1} {self.size[1] - y1} {self.size[1] - y0}]\n'
                 + _settings(self.scene))

@@ -12,6 +12,7 @@ from .atlases import Atlases
 from .baking import Surface
 from .body import Body
 from .body_demand import MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS, BodyDemand
+from .clipping import Clipping
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
@@ -86,7 +87,7 @@ class SceneExporter:
         self._write_world()
         self._look_at_instances()
         self._look_at_bodies()
-        self.visibility = Visibility(self.depsgraph.view_layer)
+        self.visibility = Visibility(self.depsgraph.view_layer, Clipping(None if self.is_preview else self.camera))
         self.volumes = self._find_volumes()
         self._write_objects(moving)
         self.materials.baked.keep()

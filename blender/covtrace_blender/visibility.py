@@ -14,10 +14,10 @@ def hidden_from(rays):
 
 
 class Visibility:
-    """Looks at the evaluated objects of a view layer, and tells once for each kind what has no counterpart."""
+    """Looks at the evaluated objects of a view layer, which a Clipping hides from the camera, and tells once for each kind what has no counterpart."""
 
-    def __init__(self, view_layer):
-        self.view_layer = view_layer
+    def __init__(self, view_layer, clipping):
+        self.view_layer, self._clipping = view_layer, clipping
         self._names = {}
 
     def hidden(self, instance):
@@ -27,6 +27,8 @@ class Visibility:
         hidden = self._hidden(obj)
         if instance.is_instance and instance.parent:
             hidden |= self._hidden(instance.parent)
+        if "camera" not in hidden and self._clipping.hides(instance):
+            hidden.add("camera")
         if not set(RAYS) - hidden:
             return None
         self._note_linking(obj)
@@ -80,6 +82,7 @@ class Visibility:
             names.append(obj.name)
 
     def tell(self, warn):
+        self._clipping.tell(warn)
         for kind, names in self._names.items():
             shown = ", ".join(f"'{name}'" for name in names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
             warn(f"ray visibility has no counterpart: {shown}: {kind}")

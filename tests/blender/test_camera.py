@@ -1,6 +1,8 @@
 """Cameras and lenses against Cycles'."""
 
-from addon_support import BlenderTest, HEIGHT, WIDTH, mean, render
+import bpy
+
+from addon_support import PARTS, BlenderTest, HEIGHT, WIDTH, material, mean, render
 
 
 class CameraTest(BlenderTest):
@@ -23,3 +25,43 @@ class CameraTest(BlenderTest):
         for part in parts:
             self.assertAlmostEqual(mean(ours, *part)[0] / mean(theirs, *part)[0], 1, delta=0.05)
         self.assertLess(mean(ours, *parts[1])[0], 0.8)  # it is blurred
+
+    def test_camera_clips_as_in_cycles(self):
+        """What is nearer than Clip Start or beyond Clip End shadows, and is not seen."""
+        self.plane(self.shining(), z=-2)
+        matt, data = material(**self.MATT), self.camera.data
+        near, far = self.plane(matt, size=1, z=4), self.plane(matt, size=1.5, z=0)
+        far.location.x = 0.7
+        self.lamp("SUN", energy=2.0, angle=0.1).rotation_euler = (0.3, 0.2, 0)
+        for kind in ("PERSP", "ORTHO"):
+            data.type, data.ortho_scale = kind, 4
+            for data.clip_start, data.clip_end in ((0.1, 100), (1.5, 100), (0.1, 4.5)):
+                ours, theirs = render("COVTRACE", 16), render("CYCLES", 16)
+                for part in PARTS:
+                    self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.02,
+                                           msg=f"{kind} {data.clip_start} {data.clip_end}")
+        data.type, data.clip_start, data.clip_end = "PERSP", 1.5, 100
+        self.export()
+        self.assertEqual(self.warnings, [])
+        near.rotation_euler = (1.2, 0, 0)
+        near.scale = (1, 4, 1)
+        self.export()
+        self.assertEqual(self.warnings, ["the camera's Clip Start cuts what is nearer; shown whole: 'Plane.001'"])
+
+    def test_panoramas_show_all_directions_as_in_cycles(self):
+        data = self.camera.data
+        of = data if hasattr(data, "panorama_type") else data.cycles
+        data.type, of.panorama_type = "PANO", "EQUIRECTANGULAR"
+        self.camera.location, self.camera.rotation_euler = (0, 0, 0), (1.2, 0.2, 0.5)
+        for place, colour in (((2, 0, 0.3), (1, 0, 0)), ((-1, 2, 0), (0, 1, 0)), ((0, -2, 1), (0, 0, 1)), ((0.3, 0.2, 2), (1, 1, 0))):
+            m = material(Emission=(*colour, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
+            bpy.ops.mesh.primitive_ico_sphere_add(radius=0.8, location=place)
+            bpy.context.object.data.materials.append(m)
+        ours, theirs = render("COVTRACE", 16), render("CYCLES", 16)
+        for x0, y0 in ((x, y) for x in range(0, WIDTH, 8) for y in range(0, HEIGHT, 8)):
+            part = (x0, y0, x0 + 8, y0 + 8)
+            for a, b in zip(mean(ours, *part), mean(theirs, *part)):
+                self.assertAlmostEqual(a, b, delta=0.03, msg=str(part))
+        of.panorama_type = "FISHEYE_EQUIDISTANT"
+        with self.assertRaises(RuntimeError):
+            self.export()
