@@ -117,8 +117,7 @@ class MaterialExporter(SumExporter):
         kind."""
         self.uv_maps, self.tangent = [], None
         output = flat_output(material.node_tree)
-        if output and output.inputs["Displacement"].is_linked:
-            self.warn(f"material '{self.name}': Displacement is not supported and left out")
+        self.heights = self._heights_of(material, output) if output else None
         node, _ = self._linked(output.inputs["Surface"]) if output else (None, None)
         volume, _ = self._linked(output.inputs["Volume"]) if output else (None, None)
         medium = self._medium(volume) if volume else ""
@@ -142,6 +141,22 @@ class MaterialExporter(SumExporter):
                 alpha = TRANSPARENT
         self._ask_for_body_of_uv_maps(node)
         return shader, emission, alpha, tuple(self.uv_maps), medium, self.tangent
+
+    def _heights_of(self, material, output):
+        """What the output's Displacement does to normals, as `heights` has it."""
+        node, _ = self._linked(output.inputs["Displacement"])
+        if node is None:
+            return None
+        if node.type != "DISPLACEMENT" or node.inputs["Normal"].is_linked:
+            self.warn(f"material '{self.name}': Displacement is not supported and left out but for the node Displacement along the normal")
+            return None
+        method = getattr(material, "displacement_method", None) or getattr(getattr(material, "cycles", None), "displacement_method", "BUMP")
+        if method != "BUMP":
+            self.warn(f"material '{self.name}': Displacement turns the surface's normals and does not move it")
+        scale = self._plain(node.inputs["Scale"])
+        if node.space == "OBJECT" and self.owner.scale != 1:
+            scale, self.hangs_on_object = scale * self.owner.scale, True
+        return node.inputs["Height"], scale
 
     def _ask_for_body_of_uv_maps(self, node):
         """Raises NeedsBody where images lie on several UV maps, of which a mesh has one here."""

@@ -300,7 +300,7 @@ class SceneExporter:
             has_body = mesh and Body.is_of(mesh)
             return Surface(self.uv_ranges.of(name), body if has_body else None, export_meshes.active_uv_map(mesh) if has_body else None)
 
-        owner = Owner(obj, material, self.random, self.placements.only_matrix(obj))
+        owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
         return self.materials.variants(material, (*Placements.key(obj), mesh is None, self.random), surface_of, owner)
 
     def _body(self, obj, mesh, material):

@@ -32,9 +32,9 @@ def stretch_of_layers(anisotropy):
 
 class ShaderWriter(SocketReader):
     """Writes textures and materials into `out`, counted by `count`, and their images to `files`. tangent: the Tangent that
-    anisotropic shaders want, or None."""
+    anisotropic shaders want, or None. heights: (FlatSocket of heights, factor on them) for shaders to which nothing gives normals, or None."""
 
-    tangent = None
+    tangent, heights = None, None
 
     def _texture(self, kind, value, treat=lambda v: v, key=""):
         """Declares a texture of an image and returns its name."""
@@ -126,7 +126,7 @@ class ShaderWriter(SocketReader):
     def _normal_map(self, node):
         """Parameters of the map that turns the normal; maps lie as the texture coordinates do, as in Cycles."""
         source, _ = self._linked(node.inputs["Normal"])
-        found = [] if source is None else self._map_of(source)
+        found = self._map_of(source) if source else self._displaced(*self.heights) if self.heights else []
         return [*found, '"bool mapsfollowuv" true'] if found else []
 
     def _map_of(self, source):
@@ -168,8 +168,13 @@ class ShaderWriter(SocketReader):
         """A texture of heights in the scene's unit."""
         if node.inputs["Normal"].is_linked:
             self.warn(f"material '{self.name}': the Normal of '{node.name}' is not supported and left out")
+        scale = max(self._plain(node.inputs["Strength"]), 0) * self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1)
+        return self._displaced(node.inputs["Height"], scale)
+
+    def _displaced(self, heights, scale):
+        """The texture of what a socket gives, `scale` times."""
         try:
-            height = self._baked_value(node.inputs["Height"], is_number=True)
+            height = self._baked_value(heights, is_number=True)
         except Unsupported as problem:
             self._ask_for_body(problem)
             self.warn(f"material '{self.name}': node '{problem.node.name}' at 'Height' is not supported ({problem.reason}); "
@@ -177,7 +182,6 @@ class ShaderWriter(SocketReader):
             return []
         if not height.image:
             return []
-        scale = max(self._plain(node.inputs["Strength"]), 0) * self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1)
         file = self.files.write_heights(height.image, scale)
         return [f'"texture displacement" "{self._declare("float", height, file)}"']
 

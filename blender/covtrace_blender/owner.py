@@ -14,9 +14,10 @@ RANGE = 1 << 32  # of Blender's random numbers
 
 class Owner:
     """All that Object Info tells of an evaluated object and the material on it. random: in [0, 1]; matrix: 4x4 from the object to the
-    world, None where there is none that is the only one."""
+    world, None where there is none that is the only one. scale: the mean one in the world, of which Object Info tells nothing."""
 
-    def __init__(self, obj=None, material=None, random=0.5, matrix=None):
+    def __init__(self, obj=None, material=None, random=0.5, matrix=None, scale=1.0):
+        self.scale = scale
         self._values = {"Random": random, "Color": (1.0, 1.0, 1.0), "Alpha": 1.0, "Object Index": 0.0, "Material Index": 0.0}
         if obj is not None:
             self._values.update({"Color": tuple(obj.color)[:3], "Alpha": obj.color[3], "Object Index": float(obj.pass_index),

@@ -39,6 +39,11 @@ class Placements:
         key = self.key(obj)
         return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
 
+    def scale(self, obj):
+        """The mean scale of a mesh in the world; of instances that of the first."""
+        matrices = self._matrices.get(self.key(obj))
+        return float(abs(np.linalg.det(matrices[0][:3, :3])) ** (1 / 3)) if matrices else 1.0
+
     def density(self, obj, mesh):
         """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, or their share of that, in steps of two, and the
         same on all of a mesh whose parts need hardly different ones, so that small moves change nothing."""

@@ -303,6 +303,35 @@ class ShaderNodesTest(BlenderTest):
         self.assert_nodes({"bump": build(1.0, 0.08), "inverted": build(1.0, 0.06, True), "half": build(0.5, 0.12)},
                           most_of_structure=0.6)
 
+    def test_displacement_turns_normals(self):
+        """By the object's scale, where the node's space is that of the object."""
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.8, 0))
+        bpy.context.object.data.energy = 2
+
+        def waves(method, space, scale):
+            def show(tree):
+                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 6.2})
+                height = tree.node("Math", {"operation": "SINE"}, {0: turned})
+                tree.link(tree.node("Displacement", {"space": space}, {"Height": height, "Scale": scale}), 0,
+                          tree.tree.nodes["Material Output"].inputs["Displacement"])
+                of = tree.material if hasattr(tree.material, "displacement_method") else tree.material.cycles
+                of.displacement_method = method
+            return show
+
+        def change(plane):
+            plane.scale = (0.5,) * 3
+            for vertex in plane.data.vertices:
+                vertex.co *= 2
+
+        self.assert_nodes({"of object": waves("BUMP", "OBJECT", 0.1), "of world": waves("BUMP", "WORLD", 0.05)}, change,
+                          mean_tolerance=0.05, most_of_structure=0.6)
+        tree = Tree("both")
+        waves("BOTH", "OBJECT", 0.1)(tree)
+        self.tile(2, tree.material)
+        self.export()
+        self.assertEqual(self.warnings, ["material 'both': Displacement turns the surface's normals and does not move it"])
+
     def test_heights_follow_uv_maps(self):
         """Smooth meshes are among them, where pbrt takes v to be as long as u and left of it."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
