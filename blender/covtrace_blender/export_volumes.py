@@ -1,28 +1,58 @@
 """Volumes of materials as even media, and which of them a place is in."""
 
 import functools
+import math
 
 import numpy as np
 
 from .export_shaders import numbers
+from .shader_nodes.blackbody import blackbody
 from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS
 from .shader_nodes.unsupported import Unsupported
 from .solid import Solid
 
 
-class Coefficients:
-    """Scattering and absorption of an even medium per unit of length, each in R, G, B; g: the mean cosine of scattering."""
+# Absorption per unit of length of what shines: pbrt's media shine by as much as they absorb. A hundred units dim by a thousandth.
+LEAST_ABSORPTION = 1e-5
 
-    def __init__(self, scattering=(0, 0, 0), absorption=(0, 0, 0), g=0.0):
-        self.scattering, self.absorption, self.g = tuple(scattering), tuple(absorption), g
+STEFAN_BOLTZMANN = 5.670373e-14 / math.pi  # of Cycles' blackbodies in volumes, by the fourth power of the temperature
+
+
+class Coefficients:
+    """Scattering and absorption of an even medium per unit of length, and the radiance that it adds on that, each in R, G, B; g: the mean
+    cosine of scattering."""
+
+    def __init__(self, scattering=(0, 0, 0), absorption=(0, 0, 0), g=0.0, light=(0, 0, 0)):
+        self.scattering, self.absorption, self.g, self.light = tuple(scattering), tuple(absorption), g, tuple(light)
 
     def plus(self, other):
         """The sum, with the mean of both cosines by how much each scatters."""
         weights = sum(self.scattering), sum(other.scattering)
         g = (self.g * weights[0] + other.g * weights[1]) / sum(weights) if sum(weights) > 0 else 0.0
-        return Coefficients([a + b for a, b in zip(self.scattering, other.scattering)],
-                            [a + b for a, b in zip(self.absorption, other.absorption)], g)
+        return Coefficients(_sum(self.scattering, other.scattering), _sum(self.absorption, other.absorption), g, _sum(self.light, other.light))
+
+    def text(self):
+        """Parameters of pbrt's homogeneous medium."""
+        shines = max(self.light) > 0
+        absorption = [max(a, LEAST_ABSORPTION) for a in self.absorption] if shines else self.absorption
+        light = f' "rgb Le" [{numbers(c / a for c, a in zip(self.light, absorption))}]' if shines else ""
+        return f'"rgb sigma_s" [{numbers(self.scattering)}] "rgb sigma_a" [{numbers(absorption)}] "float g" {self.g:.9g}{light}'
+
+
+def _sum(first, second):
+    return [a + b for a, b in zip(first, second)]
+
+
+def _light_of_principled(node, colour_of, number_of):
+    """The radiance that a node Principled Volume adds per unit of length; its density does not count."""
+    strength, glow = (max(number_of(node.inputs[name]), 0) for name in ("Emission Strength", "Blackbody Intensity"))
+    light = [strength * max(c, 0) for c in colour_of(node.inputs["Emission Color"])] if strength > 0 else (0, 0, 0)
+    if glow > 0:
+        temperature = max(number_of(node.inputs["Temperature"]), 0)
+        power = STEFAN_BOLTZMANN * (1 + glow * (temperature**4 - 1))
+        light = _sum(light, [power * max(c * t, 0) for c, t in zip(blackbody(temperature), colour_of(node.inputs["Blackbody Tint"]))])
+    return light
 
 
 def coefficients(node, colour_of, number_of, tell):
@@ -37,22 +67,24 @@ def coefficients(node, colour_of, number_of, tell):
 
     if node.type == "ADD_SHADER":
         return shader(node.inputs[0]).plus(shader(node.inputs[1]))
+    if node.type == "EMISSION":
+        strength = max(number_of(node.inputs["Strength"]), 0)
+        return Coefficients(light=[max(c, 0) * strength for c in colour_of(node.inputs["Color"])])
     if node.type not in ("VOLUME_SCATTER", "VOLUME_ABSORPTION", "PRINCIPLED_VOLUME"):
         raise Unsupported(node, "it is no even medium")
     density = max(number_of(node.inputs["Density"]), 0)
     colour = [max(c, 0) for c in colour_of(node.inputs["Color"])]
     if node.type == "VOLUME_ABSORPTION":
         return Coefficients(absorption=[max(1 - c, 0) * density for c in colour])
-    scattering, absorption = [c * density for c in colour], (0, 0, 0)
+    scattering, absorption, light = [c * density for c in colour], (0, 0, 0), (0, 0, 0)
     g = number_of(node.inputs["Anisotropy"])
     if node.type == "PRINCIPLED_VOLUME":
         kept = [max(c, 0) ** 0.5 for c in colour_of(node.inputs["Absorption Color"])]
         absorption = [max(1 - c, 0) * max(1 - k, 0) * density for c, k in zip(colour, kept)]
-        if max(number_of(node.inputs[name]) for name in ("Emission Strength", "Blackbody Intensity")) > 0:
-            tell(f"the light of '{node.name}' is not supported and left out")
+        light = _light_of_principled(node, colour_of, number_of)
     elif getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
         tell(f"the phase function of '{node.name}' is not supported; Henyey-Greenstein takes its place")
-    return Coefficients(scattering, absorption, min(max(g, -0.99), 0.99))
+    return Coefficients(scattering, absorption, min(max(g, -0.99), 0.99), light)
 
 
 def has_volume(material):
@@ -71,8 +103,7 @@ class Media:
         """The name of a medium of these Coefficients."""
         name = f"medium {len(self._coefficients)}"
         self._coefficients[name] = found
-        self.out.write(f'MakeNamedMedium "{name}" "string type" "homogeneous" "rgb sigma_s" [{numbers(found.scattering)}] '
-                       f'"rgb sigma_a" [{numbers(found.absorption)}] "float g" {found.g:.9g}\n')
+        self.out.write(f'MakeNamedMedium "{name}" "string type" "homogeneous" {found.text()}\n')
         return name
 
     def sum(self, names):

@@ -22,7 +22,7 @@ class VolumesTest(BlenderTest):
         output, node = m.node_tree.nodes.new("ShaderNodeOutputMaterial"), m.node_tree.nodes.new(kind)
         for name, value in inputs.items():
             node.inputs[name.replace("_", " ")].default_value = value
-        m.node_tree.links.new(node.outputs["Volume"], output.inputs["Volume"])
+        m.node_tree.links.new(node.outputs[0], output.inputs["Volume"])
         if surface:
             m.node_tree.links.new(m.node_tree.nodes.new(surface).outputs[0], output.inputs["Surface"])
         box.data.materials.append(m)
@@ -66,6 +66,17 @@ class VolumesTest(BlenderTest):
         self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Color=(1, 0.5, 0.2, 1), Density=0.5, Anisotropy=0.4)
         self.point((1, 0, 0), 200)
         self.assert_as_cycles(0.05)
+
+    def test_volumes_shine_as_in_cycles(self):
+        """Thin ones, and those that absorb and scatter their light."""
+        self.plane(material(**self.MATT), size=6, z=-1)
+        principled = dict(Emission_Strength=0.6, Emission_Color=(1, 0.4, 0.1, 1), Blackbody_Intensity=1.0, Temperature=1600.0)
+        self.body((-1, 0, 0), (1, 2, 1), "ShaderNodeEmission", Color=(0.2, 0.5, 1, 1), Strength=0.8)
+        self.body((0.2, 0, 0), (1, 1, 1), "ShaderNodeVolumePrincipled", Density=2.0, Color=(0.5, 0.2, 0.2, 1), **principled)
+        self.body((1.4, 0, 0), (1, 1, 1), "ShaderNodeVolumePrincipled", Density=0.0, **principled)
+        self.assert_as_cycles(0.03)
+        self.export()
+        self.assertEqual(self.warnings, [])
 
     def test_fog_around_the_camera_and_what_stands_in_it(self):
         self.body((0, 0, 2), (8, 8, 10), "ShaderNodeVolumePrincipled", Color=(0.5, 0.5, 0.8, 1), Density=0.15)
