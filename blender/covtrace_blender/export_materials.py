@@ -8,7 +8,8 @@ import numpy as np
 from . import hair_pigment
 from .baked_images import BakedImages
 from .baking import Baker, Surface
-from .export_shaders import stretch_of_glossy, stretch_of_layers
+from .emission import either
+from .export_shaders import squared, stretch_of_glossy, stretch_of_layers
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
@@ -89,6 +90,8 @@ class MaterialExporter(SumExporter):
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
         nodes = list(all_nodes(material.node_tree))
+        if any(node.type == "NEW_GEOMETRY" and node.outputs["Backfacing"].is_linked for node in nodes):
+            self.warn(f"material '{self.name}': surfaces look from behind as from their front; Backfacing is 0")
         self.baker.owner = None
         asked = asked_of_owner(nodes)
         if asked:
@@ -199,6 +202,7 @@ class MaterialExporter(SumExporter):
                  "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy, "BSDF_ANISOTROPIC": self._glossy, "BSDF_METALLIC": self._metallic,
                  "BSDF_HAIR_PRINCIPLED": self._hair, "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
                  "SUBSURFACE_SCATTERING": self._subsurface_scattering,
+                 "BSDF_SHEEN": self._fibres, "BSDF_VELVET": self._fibres, "BSDF_TOON": self._toon, "HOLDOUT": self._holdout,
                  "EMISSION": lambda node: self._black(), "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
         if node.type in known:
             return known[node.type](node)
@@ -215,6 +219,25 @@ class MaterialExporter(SumExporter):
     def _diffuse(self, node):
         return self._make("diffuse", [self._colour("reflectance", self._value(node.inputs["Color"])),
                                       *self._normal_map(node)])
+
+    def _fibres(self, node):
+        """Sheen, and Velvet as it is named before Blender 4.0: those of Principled over black."""
+        if getattr(node, "distribution", "ASHIKHMIN") == "ASHIKHMIN":
+            self.warn(f"material '{self.name}': the distribution of '{node.name}' is not supported; that of Principled's sheen takes its place")
+        roughness = either(node.inputs, "Roughness", "Sigma")
+        return self._make("diffuse", ['"rgb reflectance" [0 0 0]', self._colour("sheen", self._value(node.inputs["Color"])),
+                                      self._number("sheenroughness", self._value(roughness, True), squared, "squared"), *self._normal_map(node)])
+
+    def _toon(self, node):
+        self.warn(f"material '{self.name}': shader '{node.name}' is not supported; {'Diffuse' if node.component == 'DIFFUSE' else 'Glossy'} "
+                  "of its colour takes its place")
+        if node.component == "DIFFUSE":
+            return self._diffuse(node)
+        return self._metal(self._value(node.inputs["Color"]), self._value(node.inputs["Size"], True), None, self._normal_map(node))
+
+    def _holdout(self, node):
+        self.warn(f"material '{self.name}': shader '{node.name}' is not supported; black takes its place")
+        return self._black()
 
     def _rough(self, node):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)

@@ -7,7 +7,7 @@ import os
 import numpy as np
 from mathutils import Vector
 
-from . import attributes, export_lights, export_meshes, export_motion, export_strands, export_world, ply
+from . import attributes, export_lights, export_meshes, export_motion, export_strands, export_world, islands, ply
 from .atlases import Atlases
 from .baking import Surface
 from .body import Body
@@ -309,7 +309,8 @@ class SceneExporter:
         if key not in self.bodies:
             matrix = self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None
             chosen = export_meshes.triangles_of(mesh, self._materials(obj), material)
-            self.bodies[key] = Body(mesh, chosen if chosen.any() else ~chosen, matrix, attributes.names(material.node_tree))
+            self.bodies[key] = Body(mesh, chosen if chosen.any() else ~chosen, matrix, attributes.names(material.node_tree),
+                                    islands.are_asked_for(material.node_tree))
         return self.bodies[key]
 
     def _look_at_bodies(self):

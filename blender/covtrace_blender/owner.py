@@ -17,7 +17,7 @@ class Owner:
     world, None where there is none that is the only one. scale: the mean one in the world, of which Object Info tells nothing."""
 
     def __init__(self, obj=None, material=None, random=0.5, matrix=None, scale=1.0):
-        self.scale = scale
+        self.scale, self._object = scale, obj
         self._values = {"Random": random, "Color": (1.0, 1.0, 1.0), "Alpha": 1.0, "Object Index": 0.0, "Material Index": 0.0}
         if obj is not None:
             self._values.update({"Color": tuple(obj.color)[:3], "Alpha": obj.color[3], "Object Index": float(obj.pass_index),
@@ -29,20 +29,43 @@ class Owner:
         """The same, of which nothing but the outputs of these names is known."""
         found = Owner()
         found._values = {name: value for name, value in self._values.items() if name in names}
+        for kind, name in (name for name in names if isinstance(name, tuple)):
+            value = _attribute(self._object, name) if self._object else None
+            if value is not None:
+                found._values[kind, name] = value
         return found
 
     def key(self):
         """Equal for owners of which Object Info tells the same."""
-        return tuple(sorted(self._values.items()))
+        return tuple(sorted(self._values.items(), key=repr))
 
     def value(self, name):
-        """() or (3,); None for what is not known."""
+        """() or (3,), of ("OBJECT", name of an attribute) (1,), (3,) or (4,); None for what is not known."""
         return None if name not in self._values else np.asarray(self._values[name], np.float32)
 
 
+def _attribute(obj, name):
+    """Up to four numbers of an object's property, or of its data's: one of the user's own, or of Blender's; None of what it has not."""
+    for thing in (obj, obj.data):
+        value = thing.get(name)
+        if value is None:
+            try:
+                value = thing.path_resolve(name)
+            except ValueError:
+                continue
+        try:
+            value = tuple(float(v) for v in value) if hasattr(value, "__len__") else (float(value),)
+        except (TypeError, ValueError):
+            continue
+        if len(value) in (1, 3, 4):
+            return value
+    return None
+
+
 def asked_of_owner(nodes):
-    """The names of the outputs of Object Info that nodes ask for."""
-    return {output.name for node in nodes if node.type == "OBJECT_INFO" for output in node.outputs if output.is_linked}
+    """What nodes ask for: the names of outputs of Object Info, and ("OBJECT", name) of attributes."""
+    return {output.name for node in nodes if node.type == "OBJECT_INFO" for output in node.outputs if output.is_linked} | {
+        ("OBJECT", node.attribute_name) for node in nodes if node.type == "ATTRIBUTE" and node.attribute_type == "OBJECT"}
 
 
 def asks_for_random(material):

@@ -63,5 +63,6 @@ class CameraTest(BlenderTest):
             for a, b in zip(mean(ours, *part), mean(theirs, *part)):
                 self.assertAlmostEqual(a, b, delta=0.03, msg=str(part))
         of.panorama_type = "FISHEYE_EQUIDISTANT"
+        data.update_tag()
         with self.assertRaises(RuntimeError):
             self.export()

@@ -248,6 +248,38 @@ class MaterialsTest(BlenderTest):
         for engine in ("COVTRACE", "CYCLES"):
             self.assertAlmostEqual(mean(render(engine, 64))[0], share, delta=tolerance, msg=engine)
 
+    def test_shaders_without_a_counterpart_have_their_colour(self):
+        """They were a light grey."""
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        fibres = "ShaderNodeBsdfSheen" if bpy.app.version >= (4, 0, 0) else "ShaderNodeBsdfVelvet"
+        for kind, tolerance in (("ShaderNodeBsdfToon", 0.05), (fibres, 0.1), ("ShaderNodeHoldout", 0.001)):
+            m = bpy.data.materials.new(kind)
+            m.use_nodes = True
+            node = m.node_tree.nodes.new(kind)
+            if "Color" in node.inputs:
+                node.inputs["Color"].default_value = (0.7, 0.1, 0.3, 1)
+            m.node_tree.links.new(node.outputs[0], m.node_tree.nodes["Material Output"].inputs["Surface"])
+            plane = self.plane(m)
+            with self.subTest(kind):
+                for a, b in zip(mean(render("COVTRACE", 16)), mean(render("CYCLES", 16))):
+                    self.assertAlmostEqual(a, b, delta=tolerance)
+                self.export()
+                self.assertEqual(any("is not supported" in w for w in self.warnings), kind != "ShaderNodeBsdfSheen", self.warnings)
+            bpy.data.objects.remove(plane)
+
+    def test_surfaces_are_as_from_their_front(self):
+        m = material()
+        tree = m.node_tree
+        mix, light = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeEmission")
+        tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], mix.inputs[0])
+        tree.links.new(light.outputs[0], mix.inputs[1])
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.plane(m)
+        self.assert_as_cycles(0.01, 16)
+        self.export()
+        self.assertEqual(self.warnings, ["material 'material': surfaces look from behind as from their front; Backfacing is 0"])
+
     def test_multiscatter_ggx_keeps_energy(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         self.camera.data.lens = 200

@@ -1,4 +1,4 @@
-"""The node Object Info against Cycles: each object fills a cell of the picture."""
+"""The node Object Info, attributes of objects and islands against Cycles: each object fills a cell of the picture."""
 
 import bpy
 import numpy as np
@@ -57,6 +57,40 @@ class ObjectInfoTest(BlenderTest):
         self.export()
         self.assertEqual(self.warnings, [])
         np.testing.assert_allclose(ours, theirs, atol=0.6 / owner.LEVELS, rtol=1e-3)
+
+    def test_objects_have_attributes(self):
+        """Of the user's own and Blender's, of the object before its data, and zero where there is none."""
+        for number, (name, output) in enumerate((("tint", "Color"), ("tint", "Fac"), ("size", "Vector"), ("of data", "Color"),
+                                                 ("color", "Alpha"), ("none", "Color"), ("none", "Alpha"), ("pass_index", "Fac"))):
+            tree = Tree("told")
+            node, shader = tree.node("Attribute", {"attribute_type": "OBJECT", "attribute_name": name}), tree.node("Emission")
+            tree.tree.links.new(next(o for o in node.outputs if o.identifier == output), shader.inputs["Color"])
+            tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+            thing = self.plane(tree.material, number)
+            thing["tint"], thing["size"], thing.data["tint"], thing.data["of data"] = (0.1, 0.5, 0.9), 0.3, (1.0, 0.0, 0.0), [0.2, 0.6, 0.4, 0.5]
+            thing.color, thing.pass_index = (0.1, 0.9, 0.4, 0.5), 1
+        ours, theirs = self.cells(2)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        np.testing.assert_allclose(ours, theirs, atol=1e-3)
+
+    def test_islands_differ_at_random(self):
+        tree = Tree("islands")
+        shader = tree.node("Emission")
+        tree.link(tree.node("NewGeometry"), "Random Per Island", shader.inputs["Color"])
+        tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+        mesh = bpy.data.meshes.new("islands")
+        # Edges in no order, by which other vertices come to stand for a part
+        corners = [(x + dx, y + dy, 0) for y in range(2) for x in range(COLUMNS) for dx, dy in ((-.5, -.5), (.45, -.5), (.45, .45), (-.5, .45))]
+        edges = [(4 * n + a, 4 * n + b) for n in range(2 * COLUMNS) for a, b in ((2, 3), (1, 0), (3, 0), (1, 2))]
+        mesh.from_pydata(corners, edges, [tuple(range(4 * n, 4 * n + 4)) for n in range(2 * COLUMNS)])
+        mesh.materials.append(tree.material)
+        self.scene.collection.objects.link(bpy.data.objects.new("islands", mesh))
+        ours, theirs = self.cells(2)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        self.assertGreater(theirs.std(), 0.15)
+        np.testing.assert_allclose(ours, theirs, atol=0.01)
 
     def test_instances_differ_at_random(self):
         thing = self.plane(self.shining("Random", "Random", "Random"))

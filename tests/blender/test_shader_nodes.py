@@ -284,6 +284,24 @@ class ShaderNodesTest(BlenderTest):
                                                               *(("ROUND",) if bpy.app.version >= (5, 1, 0) else ()))},
                            **{f"mapping {kind}": placed(kind) for kind in ("TEXTURE", "NORMAL")}})
 
+    def test_turned_vectors(self):
+        def turned(kind, invert, **inputs):
+            def show(tree):
+                node = tree.node("VectorRotate", {"rotation_type": kind, "invert": invert}, {
+                    "Vector": tree.uv(), "Center": (0.3, 0.2, 0.1), **inputs})
+                half = tree.node("VectorMath", {"operation": "MULTIPLY"}, {0: node, 1: (0.5, 0.5, 0.5)})  # no colours above 1
+                tree.show(tree.node("VectorMath", {"operation": "ABSOLUTE"}, {0: half}))
+            return show
+
+        def by_number(tree):
+            angle = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(1), 1: 2.0})
+            turned("AXIS_ANGLE", False, Axis=(0.2, 0.3, 1), Angle=angle)(tree)
+
+        self.assert_nodes({"axis": turned("AXIS_ANGLE", False, Axis=(0.2, 0.3, 1), Angle=0.7), "by a number": by_number,
+                           "inverted": turned("Y_AXIS", True, Angle=0.7), "no axis": turned("AXIS_ANGLE", False, Axis=(0, 0, 0), Angle=0.7),
+                           "angles": turned("EULER_XYZ", False, Rotation=(0.1, 0.2, 0.6)),
+                           "inverted angles": turned("EULER_XYZ", True, Rotation=(0.1, 0.2, 0.6))})
+
     def test_heights_turn_normals(self):
         """Lit from the side, waves of heights have a bright and a dark side."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)

@@ -27,6 +27,10 @@ _GEOMETRY = {"Position": "WORLD", "Normal": "WORLD NORMAL", "True Normal": "WORL
 
 
 def _geometry(node, output, inputs):
+    if output.identifier == "Backfacing":
+        return np.float32(0)  # surfaces are the same from behind; MaterialExporter tells
+    if output.identifier == "Random Per Island":
+        return inputs.place.coordinates(node, "ISLAND")[:, 0]
     if output.identifier not in _GEOMETRY:
         raise Unsupported(node, f"its {output.identifier.lower()} has no counterpart")
     return inputs.place.coordinates(node, _GEOMETRY[output.identifier])
@@ -57,6 +61,24 @@ def _mapping(node, output, inputs):
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
 
 
+def _vector_rotate(node, output, inputs):
+    vector, centre = inputs.vector("Vector"), inputs.vector("Center")
+    if node.rotation_type == "EULER_XYZ":
+        angles = inputs.vector("Rotation")
+        if angles.ndim > 1:
+            raise Unsupported(node, "its rotation is not the same everywhere")
+        turn = rotation(angles)
+        return (vector - centre) @ (turn if node.invert else turn.T) + centre
+    axes = {"X_AXIS": (1, 0, 0), "Y_AXIS": (0, 1, 0), "Z_AXIS": (0, 0, 1)}
+    axis = np.array(axes[node.rotation_type], np.float32) if node.rotation_type in axes else inputs.vector("Axis")
+    length = np.linalg.norm(axis, axis=-1, keepdims=True)
+    axis, away = axis / np.maximum(length, 1e-30), vector - centre
+    angle = inputs.number("Angle")[..., None] * (-1 if node.invert else 1)
+    along = axis * (axis * away).sum(axis=-1, keepdims=True)
+    turned = along + (away - along) * np.cos(angle) + np.cross(axis, away) * np.sin(angle)
+    return np.where(length > 0, turned + centre, vector)
+
+
 ACTIVE_COLOUR = None  # the name of the colour that is active for rendering
 
 
@@ -66,14 +88,26 @@ def attribute_of(node):
 
 
 def _attribute(node, output, inputs):
-    if getattr(node, "attribute_type", "GEOMETRY") != "GEOMETRY":
-        raise Unsupported(node, f"attributes of its type {node.attribute_type.lower()} have no counterpart")
     # Blender 5.3 calls Fac Factor, and has kept its identifier.
     part = {"Fac": "NUMBER", "Alpha": "ALPHA"}.get(output.identifier, "ATTRIBUTE")
+    kind = getattr(node, "attribute_type", "GEOMETRY")
+    if kind == "OBJECT" and inputs.place.owner:
+        return _part_of(inputs.place.owner.value((kind, node.attribute_name)), part)
+    if kind != "GEOMETRY":
+        raise Unsupported(node, f"attributes of its type {kind.lower()} have no counterpart")
     # As in Cycles: Attribute takes what a mesh has not for a number, which is opaque.
     missing = 1.0 if part == "ALPHA" and node.type == "ATTRIBUTE" else 0.0
     found = inputs.place.attribute(node, attribute_of(node), part, missing)
     return found if part == "ATTRIBUTE" else found.mean(axis=-1)
+
+
+def _part_of(value, part):
+    """A part of an object's attribute: (1,), (3,) or (4,), or None for what it has not."""
+    if value is None:
+        value = np.zeros(4, np.float32)
+    if part == "ALPHA":
+        return value[3] if len(value) > 3 else np.float32(1)
+    return value[:3].mean() if part == "NUMBER" else np.resize(value[:3], 3)
 
 
 def _object_info(node, output, inputs):
@@ -84,6 +118,6 @@ def _object_info(node, output, inputs):
     return found
 
 
-NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping,
+NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping, "VECTOR_ROTATE": _vector_rotate,
          "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}
