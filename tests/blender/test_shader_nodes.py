@@ -1,78 +1,15 @@
-"""Each shader node that is baked, against Cycles: matt tiles in a white world, which show their colour and nothing else."""
+"""Each shader node that is baked, against Cycles."""
 
 import unittest
 import unittest.mock
 
 import bpy
-import numpy as np
-from addon_support import BlenderTest, render
-from covtrace_blender import baking, export_scene
+from covtrace_blender import baking
+from node_tiles import NodeTilesTest
 from node_trees import BLUE, ORANGE, Tree
 
-SIZE = (128, 96)
-TILES = 4  # a row and a column of them; each is 32 x 24 pixels, of which 28 x 20 are looked at, in 4 x 4 regions
 
-
-class ShaderNodesTest(BlenderTest):
-    def setUp(self):
-        super().setUp()
-        self.scene.render.resolution_x, self.scene.render.resolution_y = SIZE
-        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
-        self.camera.data.type, self.camera.data.ortho_scale = "ORTHO", TILES
-        self.scene.covtrace.method = "uniform"
-        # Small images: the choice of their size has a test of its own.
-        patch = unittest.mock.patch.object(baking, "LARGEST", 512)
-        patch.start()
-        self.addCleanup(patch.stop)
-
-    def tile(self, number, material):
-        """A plane 1 x 3/4 at its place in the picture, the rows from the top."""
-        bpy.ops.mesh.primitive_plane_add(size=1)
-        plane = bpy.context.object
-        for vertex in plane.data.vertices:
-            vertex.co.y *= 0.75
-        plane.location = (number % TILES + 0.5 - TILES / 2, 0.75 * (TILES / 2 - 0.5 - number // TILES), 0)
-        plane.data.materials.append(material)
-        return plane
-
-    def pictures(self, samples=16):
-        """Ours and Cycles', (rows, columns, 3) from the top."""
-        found = []
-        for engine, name in (("COVTRACE", "Noisy Image"), ("CYCLES", "Combined")):
-            image = render(engine, samples)
-            found.append(np.stack([np.reshape(image[f"{name}.{c}"], SIZE[::-1]) for c in "RGB"], axis=-1))
-        return found
-
-    def assert_nodes(self, builds, change=lambda plane: None, region_tolerance=0.03, mean_tolerance=0.03, warnings=(),
-                     most_of_structure=0.25, samples=16, has_structure=True):
-        """builds: {name: function that shows a node of a Tree}. Asserts that no tile's mean colour is off by more than the
-        share `mean_tolerance`, and no region's by more than `region_tolerance` and the share `most_of_structure` of the
-        regions' standard deviation, so that a tile's mean does not pass for the tile."""
-        for number, (name, build) in enumerate(builds.items()):
-            tree = Tree(name)
-            build(tree)
-            change(self.tile(number, tree.material))
-        write, told = export_scene.SceneExporter.write, []
-
-        def listening(exporter):
-            path = write(exporter)
-            told.extend(exporter.warnings)
-            return path
-
-        with unittest.mock.patch.object(export_scene.SceneExporter, "write", listening):
-            ours, theirs = self.pictures(samples)
-        self.assertEqual(told, list(warnings))
-        for number, name in enumerate(builds):
-            with self.subTest(name):
-                y, x = (24 * (number // TILES) + 2, 32 * (number % TILES) + 2)
-                a, b = (p[y:y + 20, x:x + 28].reshape(4, 5, 4, 7, 3).mean(axis=(1, 3)) for p in (ours, theirs))
-                text = f"means {a.mean(axis=(0, 1))} against {b.mean(axis=(0, 1))}, worst region {np.abs(a - b).max():.4f}"
-                structure = b.std(axis=(0, 1)).max() if has_structure else 1
-                self.assertGreater(structure, 0.025, "the tile's regions are alike")
-                off = np.abs(a.mean(axis=(0, 1)) - b.mean(axis=(0, 1)))
-                self.assertTrue((off <= mean_tolerance * b.mean(axis=(0, 1))).all(), text)
-                self.assertLess(np.abs(a - b).max(), min(region_tolerance, most_of_structure * structure), text)
-
+class ShaderNodesTest(NodeTilesTest):
     @staticmethod
     def of_textures(textures):
         """{name: (kind, settings, inputs, output)} on UV coordinates."""
@@ -301,89 +238,6 @@ class ShaderNodesTest(BlenderTest):
                            "inverted": turned("Y_AXIS", True, Angle=0.7), "no axis": turned("AXIS_ANGLE", False, Axis=(0, 0, 0), Angle=0.7),
                            "angles": turned("EULER_XYZ", False, Rotation=(0.1, 0.2, 0.6)),
                            "inverted angles": turned("EULER_XYZ", True, Rotation=(0.1, 0.2, 0.6))})
-
-    def test_heights_turn_normals(self):
-        """Lit from the side, waves of heights have a bright and a dark side."""
-        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
-        bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.8, 0))
-        bpy.context.object.data.energy = 2
-
-        def build(strength, distance, invert=False):
-            def show(tree):
-                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 6.2})
-                waves = tree.node("Math", {"operation": "SINE"}, {0: turned})
-                height = tree.node("Math", {"operation": "MULTIPLY"}, {0: waves, 1: tree.number(1)})
-                bump = tree.node("Bump", {"invert": invert}, {"Strength": strength, "Distance": distance, "Height": height})
-                tree.link(bump, 0, tree.shader.inputs["Normal"])
-            return show
-
-        # Cycles darkens what bumps turn towards the light, by up to 4 % here (its term against hard terminators).
-        self.assert_nodes({"bump": build(1.0, 0.08), "inverted": build(1.0, 0.06, True), "half": build(0.5, 0.12)},
-                          most_of_structure=0.6)
-
-    def test_displacement_turns_normals(self):
-        """By the object's scale, where the node's space is that of the object."""
-        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
-        bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.8, 0))
-        bpy.context.object.data.energy = 2
-
-        def waves(method, space, scale):
-            def show(tree):
-                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 6.2})
-                height = tree.node("Math", {"operation": "SINE"}, {0: turned})
-                tree.link(tree.node("Displacement", {"space": space}, {"Height": height, "Scale": scale}), 0,
-                          tree.tree.nodes["Material Output"].inputs["Displacement"])
-                of = tree.material if hasattr(tree.material, "displacement_method") else tree.material.cycles
-                of.displacement_method = method
-            return show
-
-        def change(plane):
-            plane.scale = (0.5,) * 3
-            for vertex in plane.data.vertices:
-                vertex.co *= 2
-
-        self.assert_nodes({"of object": waves("BUMP", "OBJECT", 0.1), "of world": waves("BUMP", "WORLD", 0.05)}, change,
-                          mean_tolerance=0.05, most_of_structure=0.6)
-        tree = Tree("both")
-        waves("BOTH", "OBJECT", 0.1)(tree)
-        self.tile(2, tree.material)
-        self.export()
-        self.assertEqual(self.warnings, ["material 'both': Displacement turns the surface's normals and does not move it"])
-
-    def test_heights_follow_uv_maps(self):
-        """Smooth meshes are among them, where pbrt takes v to be as long as u and left of it."""
-        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
-        bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.8, 0))
-        bpy.context.object.data.energy = 2
-
-        def waves(axis):
-            def show(tree):
-                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(axis), 1: 6.2})
-                heights = tree.node("Math", {"operation": "SINE"}, {0: turned})
-                tree.link(tree.node("Bump", {}, {"Distance": 0.05, "Height": heights}), 0, tree.shader.inputs["Normal"])
-            return show
-
-        def change(plane):
-            plane.data.polygons[0].use_smooth = True
-            for loop in plane.data.uv_layers[0].data:
-                loop.uv = (loop.uv[1], 2 * loop.uv[0])  # mirrored and stretched
-
-        self.assert_nodes({"along u": waves(0), "along v": waves(1)}, change, mean_tolerance=0.05, most_of_structure=0.6)
-
-    def test_heights_from_above(self):
-        """Lit along the normal, where Cycles' term against hard terminators is 1. Slopes stay below 1, where it bends normals."""
-        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
-        bpy.ops.object.light_add(type="SUN")
-        bpy.context.object.data.energy = 3
-
-        def waves(distance):
-            def show(tree):
-                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 3.1})
-                height = tree.node("Math", {"operation": "SINE"}, {0: turned})
-                tree.link(tree.node("Bump", {}, {"Distance": distance, "Height": height}), 0, tree.shader.inputs["Normal"])
-            return show
-
-        self.assert_nodes({"low": waves(0.2), "high": waves(0.3)}, most_of_structure=0.1)
 
     def test_generated_coordinates_of_planes(self):
         def generated(tree):
