@@ -37,8 +37,8 @@ class Body:
     """The triangles of a mesh that one material is on, with an Atlas of them.
 
     chosen: (n,) bool, which of the mesh's triangles these are. matrix: 4x4 from the mesh to the world; None where there
-    is none that is the only one. attribute_names: those that nodes ask for; has_islands: whether they ask for Random Per Island. rest: (n, 3, 3) corners of the triangles before all
-    deformation.
+    is none that is the only one. attribute_names: those that nodes ask for; has_islands: whether they ask for Random Per
+    Island. rest: (n, 3, 3) corners of the triangles before all deformation.
     """
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""What the camera does not see as it is nearer than Clip Start or farther than Clip End; other rays see it, as in Cycles."""
+"""Objects that the camera does not see as they are nearer than Clip Start or beyond Clip End; other rays see them, as in Cycles."""
 
 import numpy as np
 

@@ -146,7 +146,7 @@ class MaterialExporter(SumExporter):
         return shader, emission, alpha, tuple(self.uv_maps), medium, self.tangent
 
     def _heights_of(self, material, output):
-        """What the output's Displacement does to normals, as `heights` has it."""
+        """Finds the heights of the output's Displacement, as `heights` has them."""
         node, _ = self._linked(output.inputs["Displacement"])
         if node is None:
             return None

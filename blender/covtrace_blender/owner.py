@@ -63,7 +63,7 @@ def _attribute(obj, name):
 
 
 def asked_of_owner(nodes):
-    """What nodes ask for: the names of outputs of Object Info, and ("OBJECT", name) of attributes."""
+    """Names of outputs of Object Info, and ("OBJECT", name) of attributes, that nodes ask for."""
     return {output.name for node in nodes if node.type == "OBJECT_INFO" for output in node.outputs if output.is_linked} | {
         ("OBJECT", node.attribute_name) for node in nodes if node.type == "ATTRIBUTE" and node.attribute_type == "OBJECT"}
 

@@ -27,7 +27,7 @@ class CameraTest(BlenderTest):
         self.assertLess(mean(ours, *parts[1])[0], 0.8)  # it is blurred
 
     def test_camera_clips_as_in_cycles(self):
-        """What is nearer than Clip Start or beyond Clip End shadows, and is not seen."""
+        """Objects nearer than Clip Start or beyond Clip End shadow, and are not seen."""
         self.plane(self.shining(), z=-2)
         matt, data = material(**self.MATT), self.camera.data
         near, far = self.plane(matt, size=1, z=4), self.plane(matt, size=1.5, z=0)

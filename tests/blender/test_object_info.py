@@ -59,7 +59,7 @@ class ObjectInfoTest(BlenderTest):
         np.testing.assert_allclose(ours, theirs, atol=0.6 / owner.LEVELS, rtol=1e-3)
 
     def test_objects_have_attributes(self):
-        """Of the user's own and Blender's, of the object before its data, and zero where there is none."""
+        """Properties of the user's own and Blender's; the object's go before its data's, and none is zero."""
         for number, (name, output) in enumerate((("tint", "Color"), ("tint", "Fac"), ("size", "Vector"), ("of data", "Color"),
                                                  ("color", "Alpha"), ("none", "Color"), ("none", "Alpha"), ("pass_index", "Fac"))):
             tree = Tree("told")
