@@ -4,6 +4,7 @@ import numpy as np
 
 from . import tiled_images
 from .baking import Surface
+from .node_images import image_of
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .working_space import luminance
 
@@ -158,7 +159,7 @@ class SocketReader:
     def _image(self, node, output, grey, mapping):
         squares = tiled_images.grid(node.image)
         mapping = tuple(value / squares[k % 2] for k, value in enumerate(mapping))
-        return Value(image=node.image, mapping=mapping, channel="A" if output.name == "Alpha" else "grey" if grey else None,
+        return Value(image=image_of(node), mapping=mapping, channel="A" if output.name == "Alpha" else "grey" if grey else None,
                      filter="point" if node.interpolation == "Closest" else "bilinear",
                      wrap=WRAPS.get(node.extension, "repeat"))
 

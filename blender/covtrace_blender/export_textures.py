@@ -8,6 +8,7 @@ import numpy as np
 
 from . import tiled_images
 from .baked import BakedImage
+from .node_images import NodeImage, with_other_opacity
 from .working_space import from_rec709
 
 
@@ -23,11 +24,14 @@ def to_srgb(values):
     return np.where(values <= 0.0031308, values * 12.92, 1.055 * values ** (1 / 2.4) - 0.055)
 
 
+LINEAR = ("Linear", "Linear Rec.709")  # linear Rec.709 before Blender 4.0, and since
+
 MISSING = (1, 0, 1, 1)  # linear; the magenta by which Blender shows images whose files are missing
 
 
 def pixels(image, warn):
-    """(height, width, 4) float32 from the top, of all its tiles; colours linear where the image says that it is sRGB."""
+    """(height, width, 4) float32 from the top, of all its tiles; colours linear where the image says that it is sRGB. image: or a
+    NodeImage."""
     if image.source == "TILED":
         return tiled_images.joined(image, lambda tile: _own_pixels(tile, warn), MISSING, warn)
     return _own_pixels(image, warn)
@@ -47,9 +51,21 @@ def _own_pixels(image, warn):
         rgba[..., :3] = values[..., :3] if image.channels == 3 else values[..., :1]
         values = rgba
     values = values.copy()
-    if not image.is_float and image.colorspace_settings.name == "sRGB":
+    if isinstance(image, NodeImage):
+        values = with_other_opacity(values, image.is_multiplied)
+    if not image.is_float and _is_srgb(image, warn):
         values[..., :3] = from_rec709(to_linear(values[..., :3]))
     return values
+
+
+def _is_srgb(image, warn):
+    """Whether bytes are taken for sRGB; no other space but linear Rec.709 is known."""
+    space = image.colorspace_settings
+    if space.name == "sRGB" or space.is_data or space.name in LINEAR:
+        return space.name == "sRGB"
+    like = "sRGB" if "sRGB" in space.name else "linear"
+    warn(f"the image '{image.name}' is in the colour space {space.name}, which is not supported; it is taken as {like}")
+    return like == "sRGB"
 
 
 def write_png(path, values):
@@ -88,7 +104,7 @@ class TextureFiles:
         self.cache = {}
 
     def source(self, image):
-        """Pixels of an image of Blender's, (h, w, 4), or of a baked one, (h, w, 3)."""
+        """Pixels of an image of Blender's or a NodeImage, (h, w, 4), or of a baked one, (h, w, 3)."""
         if isinstance(image, BakedImage):
             return image.values
         if image.name_full not in self.cache:

@@ -8,6 +8,7 @@ import bpy
 from addon_support import BlenderTest, material, mean, render, socket
 from covtrace_blender import body_baking, tiled_images
 from covtrace_blender.baking import Baker
+from node_trees import Tree
 
 
 class TexturesTest(BlenderTest):
@@ -217,3 +218,37 @@ class TexturesTest(BlenderTest):
         ours, theirs = mean(render("COVTRACE", 64)), mean(render("CYCLES", 64))
         for a, b in zip(ours, theirs):
             self.assertAlmostEqual(a / b, 1, delta=0.02, msg=f"{ours} against {theirs}")
+
+    def test_opacity_of_images_counts_as_in_cycles(self):
+        """Colours are multiplied by it where nothing reads Alpha, but for data and channels that are packed."""
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.scene.covtrace.method = "uniform"
+        for mode, space, is_float, reads in (("STRAIGHT", "sRGB", False, False), ("STRAIGHT", "sRGB", False, True), ("PREMUL", "sRGB", False, False),
+                                             ("CHANNEL_PACKED", "sRGB", False, False), ("STRAIGHT", "Non-Color", False, False),
+                                             ("PREMUL", "", True, False), ("PREMUL", "", True, True)):
+            image = bpy.data.images.new("image", 2, 2, alpha=True, float_buffer=is_float)
+            if space:
+                image.colorspace_settings.name = space
+            image.pixels = [0.35, 0.15, 0.25, 0.5] * 4
+            image.pack()
+            image.alpha_mode = mode
+            tree = Tree("image")
+            node = tree.node("TexImage", {"image": image})
+            tree.show(node)
+            if reads:
+                add = tree.node("Math", {"operation": "MULTIPLY"}, {0: (node, "Alpha"), 1: 0.05})
+                tree.link(add, 0, tree.shader.inputs["Roughness"])
+            plane = self.plane(tree.material)
+            with self.subTest(mode=mode, space=space, is_float=is_float, reads=reads):
+                for a, b in zip(mean(render("COVTRACE", 4)), mean(render("CYCLES", 4))):
+                    self.assertAlmostEqual(a, b, delta=0.02)
+            bpy.data.objects.remove(plane)
+
+    def test_colour_spaces_of_images_are_told(self):
+        image = bpy.data.images.new("image", 2, 2)
+        image.colorspace_settings.name = "Filmic sRGB"
+        tree = Tree("image")
+        tree.show(tree.node("TexImage", {"image": image}))
+        self.plane(tree.material)
+        self.export()
+        self.assertEqual(self.warnings, ["the image 'image' is in the colour space Filmic sRGB, which is not supported; it is taken as sRGB"])

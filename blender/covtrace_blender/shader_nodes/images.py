@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from .. import tiled_images
+from ..node_images import image_of
 from .unsupported import Unsupported
 
 WRAPS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
@@ -93,7 +94,7 @@ def _image(node, output, inputs):
 
     def look_up(uv):
         uv = uv / np.array(tiled_images.grid(node.image), np.float32)
-        return sample(inputs.place.pixels(node.image), uv, node.extension, node.interpolation == "Closest")
+        return sample(inputs.place.pixels(image_of(node)), uv, node.extension, node.interpolation == "Closest")
 
     if node.projection == "BOX":
         found = _boxed(node, inputs, look_up)
