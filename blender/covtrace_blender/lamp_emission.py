@@ -6,6 +6,10 @@ from mathutils import Euler, Matrix
 
 from .photometry import Damaged
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
+from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.flat import flat_socket
+from .shader_nodes.place import UvPlace
+from .shader_nodes.unsupported import Unsupported
 
 
 _MATHS = {"ADD": np.add, "SUBTRACT": np.subtract, "MULTIPLY": np.multiply,
@@ -50,8 +54,7 @@ class LampEmission:
             first, second = (self._emitted(part) for part in shader.inputs[-2:])
             if shader.type == "ADD_SHADER":
                 return first + second
-            self._tell_linked(shader.inputs[0])
-            share = min(max(shader.inputs[0].default_value, 0), 1)
+            share = min(max(float(np.mean(self._number(shader.inputs[0]))), 0), 1)
             return (1 - share) * first + share * second
         if shader.type != "EMISSION":
             if shader.type.startswith("BSDF_"):
@@ -71,11 +74,16 @@ class LampEmission:
         number = self._linked_number(node)
         if number is not None:
             return np.asarray(number)[..., None] * np.ones(3)
+        colour = _constant(socket, is_number=False) if node else None
+        if colour is not None:
+            return colour
         self._tell_linked(socket)
         return np.array(socket.default_value)[:3]
 
     def _number(self, socket):
         number = self._linked_number(_node_at(socket))
+        if number is None and socket.is_linked:
+            number = _constant(socket, is_number=True)
         if number is None:
             self._tell_linked(socket)
             number = socket.default_value
@@ -148,6 +156,20 @@ class LampEmission:
         if socket.is_linked:
             self.warn(f"lamp '{self.lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
                       "the socket's own value is used")
+
+
+def _constant(socket, is_number):
+    """The number or colour that a socket gets in all directions for the rays that lamps are sampled by, which in Cycles are of no kind;
+    None where it hangs on anything else."""
+    def pixels_of(image):
+        raise Unsupported(socket.node, f"the image '{image.name}' is not the same everywhere")
+    place = UvPlace(np.zeros((1, 2), np.float32), pixels_of, ray="lamp")
+    try:
+        nodes, flat = Evaluator(place), flat_socket(socket)
+        value = np.asarray(nodes.number(flat) if is_number else nodes.vector(flat), float)
+    except Unsupported:
+        return None
+    return None if place.uv_maps or place.hangs_on_angle else value
 
 
 def _link_at(socket):

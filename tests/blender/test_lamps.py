@@ -53,6 +53,26 @@ class LampsTest(BlenderTest):
         emission.inputs["Color"].default_value, emission.inputs["Strength"].default_value = (0.5, 0.5, 0.5, 1), 3
         self.assertAlmostEqual(self.centre() / plain, 1.5, delta=0.01)
 
+    def test_constants_of_lamps_are_as_in_cycles(self):
+        """Trees of nodes that are the same in all directions, and Light Path, by which lamps are lit for rays of no kind."""
+        self.plane(material(**self.MATT))
+        lamp = self.lamp("POINT", energy=200, shadow_soft_size=0).data
+        lamp.use_nodes = True
+        tree = lamp.node_tree
+        emission, path, ramp = tree.nodes["Emission"], tree.nodes.new("ShaderNodeLightPath"), tree.nodes.new("ShaderNodeValToRGB")
+        add, mixed = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeMixShader")
+        tree.links.new(path.outputs["Is Camera Ray"], add.inputs[0])
+        add.inputs[1].default_value = 1.5
+        tree.links.new(add.outputs[0], emission.inputs["Strength"])
+        ramp.color_ramp.elements[0].color, ramp.inputs["Fac"].default_value = (1, 0.2, 0.1, 1), 0.3
+        tree.links.new(ramp.outputs["Color"], emission.inputs["Color"])
+        tree.links.new(path.outputs["Is Camera Ray"], mixed.inputs[0])
+        tree.links.new(emission.outputs[0], mixed.inputs[1])
+        tree.links.new(mixed.outputs[0], tree.nodes["Light Output"].inputs["Surface"])
+        self.assert_as_cycles(0.03)
+        self.export()
+        self.assertEqual(self.warnings, [])
+
     def test_world_image_stands_as_in_cycles(self):
         image = self.sky_image()
         node = self.scene.world.node_tree.nodes.new("ShaderNodeTexEnvironment")

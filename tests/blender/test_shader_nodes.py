@@ -4,9 +4,9 @@ import unittest
 import unittest.mock
 
 import bpy
-from covtrace_blender import baking
 from node_tiles import NodeTilesTest
 from node_trees import BLUE, ORANGE, Tree
+from covtrace_blender import baking  # after what finds it
 
 
 class ShaderNodesTest(NodeTilesTest):
