@@ -26,6 +26,11 @@ def _is_whole_panorama(data):
         all(abs(getattr(of, name) - math.pi * share) < 1e-4 for name, share in whole.items())
 
 
+def _exposure(scene):
+    """The factor on all light that Cycles has among its settings of the film."""
+    return getattr(getattr(scene, "cycles", None), "film_exposure", 1.0)
+
+
 KINDS = {"PERSP": "perspective", "ORTHO": "orthographic", "PANO": "spherical"}
 
 
@@ -115,7 +120,7 @@ class SceneCamera:
         iso = 100 / (shutter[1] - shutter[0]) if shutter else 100
         return (times + place + f'Camera "{KINDS[data.type]}" {" ".join(parameters)}\n'
                 f'Film "rgb" "integer xresolution" {self.size[0]} "integer yresolution" {self.size[1]} '
-                f'"float iso" {iso:.9g} "integer pixelbounds" [{x0} {x1} {self.size[1] - y1} {self.size[1] - y0}]\n'
+                f'"float iso" {iso * _exposure(self.scene):.9g} "integer pixelbounds" [{x0} {x1} {self.size[1] - y1} {self.size[1] - y0}]\n'
                 + _settings(self.scene))
 
     def _lens(self, data, is_perspective):
@@ -142,4 +147,5 @@ def viewport_text(scene, size, view_matrix, window_matrix):
     fov = '"float fov" 90' if is_perspective else ""
     return (placement("Transform", TURN @ view, None) +
             f'Camera "{"perspective" if is_perspective else "orthographic"}" "float screenwindow" [{numbers(window)}] {fov}\n'
-            f'Film "rgb" "integer xresolution" {size[0]} "integer yresolution" {size[1]}\n' + _settings(scene))
+            f'Film "rgb" "integer xresolution" {size[0]} "integer yresolution" {size[1]} '
+            f'"float iso" {100 * _exposure(scene):.9g}\n' + _settings(scene))

@@ -21,6 +21,7 @@ from .node_signature import hangs_on_world
 from .owner import Owner, asks_for_random, random_of
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
+from .shutter import is_blurred, shutter_times
 from .shader_nodes.light_path import RAYS
 from .texel_density import Placements
 from .uv_ranges import UvRanges
@@ -48,7 +49,7 @@ class SceneExporter:
         self.frame = self.scene.frame_current_final
         self.warnings = []
         self.camera = SceneCamera(self.scene, depsgraph)
-        self.shutter, self.is_preview = None, False
+        self.shutter, self.is_preview, self.still = None, False, {}
 
     def warn(self, text):
         if text not in self.warnings:
@@ -109,14 +110,17 @@ class SceneExporter:
         render = self.scene.render
         if not render.use_motion_blur:
             return {}, None
-        frame, half = self.frame, 0.5 * render.motion_blur_shutter
-        self._go_to(frame + half)
+        frame, (opening, closing) = self.frame, shutter_times(self.scene)
+        if not all(is_blurred(instance) for _, instance in self._instances()):
+            self._go_to(frame + 0.5 * (opening + closing))
+        self.still = {key: instance.matrix_world.copy() for key, instance in self._instances() if not is_blurred(instance)}
+        self._go_to(frame + closing)
         matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
         matrices["camera"] = self.camera.matrix()
         self.closing = {instance.object.name_full: export_meshes.positions(instance.object.data)
                         for _, instance in self._instances() if instance.object.type == "MESH" and self._is_own(instance.object)}
-        self._go_to(frame - half)
-        return matrices, (-half, half)
+        self._go_to(frame + opening)
+        return matrices, (opening, closing)
 
     def _is_own(self, obj):
         """Whether its data is that of the object of its name: geometry nodes place other data under their object's name."""
@@ -161,8 +165,8 @@ class SceneExporter:
             hidden = self.visibility.hidden(instance)
             if hidden is None:
                 continue
-            matrix = instance.matrix_world.copy()
-            end = moving.get(key)
+            matrix = self.still.get(key) or instance.matrix_world.copy()
+            end = None if key in self.still else moving.get(key)
             if obj.type == "LIGHT" and instance.show_self:
                 self._write_lamp(obj, matrix, end, hidden)
             elif obj.type in SURFACES or obj.type == "CURVES":

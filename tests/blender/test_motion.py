@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, curves_of, material, mean, render
+from addon_support import HEIGHT, BlenderTest, curves_of, material, mean, render
 
 
 class MotionTest(BlenderTest):
@@ -23,6 +23,29 @@ class MotionTest(BlenderTest):
         middle = mean(blurred, 14, 10, 18, 14)[0]
         self.assertAlmostEqual(middle, 0.5, delta=0.06)  # over twice the way
         self.assertEqual(self.scene.frame_current, 1)
+
+    def test_the_shutter_opens_as_in_cycles_and_not_for_all(self):
+        """Where an object stands tells when it was seen; one that is not blurred is seen in the middle of that time."""
+        self.scene.cycles.film_exposure = 1.5
+        for y, is_blurred in ((-0.6, True), (0.6, False)):
+            plane = self.plane(self.shining(), size=0.6)
+            for frame, x in ((0, -1.5), (2, 1.5)):
+                plane.location = (x, y, 0)
+                plane.keyframe_insert("location", frame=frame)
+            for curve in curves_of(plane):
+                for key in curve.keyframe_points:
+                    key.interpolation = "LINEAR"
+            plane.cycles.use_motion_blur = is_blurred
+        self.scene.frame_set(1)
+        render_settings = self.scene.render
+        render_settings.use_motion_blur, render_settings.motion_blur_shutter = True, 0.6
+        of = render_settings if hasattr(render_settings, "motion_blur_position") else self.scene.cycles
+        for of.motion_blur_position in ("START", "CENTER", "END"):
+            ours, theirs = render("COVTRACE", 16), render("CYCLES", 32)
+            for x in range(8, 24, 4):
+                for y in (0, HEIGHT // 2):
+                    part = (x, y, x + 4, y + HEIGHT // 2)
+                    self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.05, msg=f"{of.motion_blur_position} {part}")
 
     def deform(self, mesh_object, moved, distance=(2, 0, 0)):
         """Adds a shape key that moves these vertices, from no part at frame 0 to the whole way at frame 2; the
