@@ -87,6 +87,17 @@ class SceneCamera:
         x0, x1, _, _ = self._window()
         return (x1 - x0) / self.size[0], self._object().data.type != "ORTHO"
 
+    def left_out(self):
+        """Texts that tell what its lens has in Blender and not here."""
+        data = self._object().data
+        dof = data.dof
+        if not dof.use_dof:
+            return []
+        if data.type == "PANO":
+            return ["the camera's depth of field is left out, as it is a panorama"]
+        is_round = dof.aperture_blades < 3 and abs(dof.aperture_ratio - 1) < 1e-6  # Cycles has no fewer blades
+        return [] if is_round else ["the camera's aperture is round; its blades and ratio are left out"]
+
     def clip_range(self):
         """(Clip Start, Clip End) along the axis of sight; None of panoramas."""
         data = self._object().data

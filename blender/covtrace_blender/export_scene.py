@@ -57,6 +57,7 @@ class SceneExporter:
 
     def write(self):
         """The path of a file that holds the scene as its camera sees it."""
+        self.warnings += self.camera.left_out()
         moving, self.shutter = self._look_at_close()
         path = os.path.join(self.folder, "scene.pbrt")
         try:

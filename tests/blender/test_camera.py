@@ -26,6 +26,14 @@ class CameraTest(BlenderTest):
             self.assertAlmostEqual(mean(ours, *part)[0] / mean(theirs, *part)[0], 1, delta=0.05)
         self.assertLess(mean(ours, *parts[1])[0], 0.8)  # it is blurred
 
+    def test_what_lenses_leave_out_is_told(self):
+        data = self.camera.data
+        for use_dof, kind, blades, ratio, count in ((True, "PERSP", 0, 1, 0), (True, "PERSP", 6, 1, 1), (True, "ORTHO", 2, 2, 1),
+                                                    (False, "PERSP", 6, 2, 0)):
+            data.type, data.dof.use_dof, data.dof.aperture_blades, data.dof.aperture_ratio = kind, use_dof, blades, ratio
+            self.export()
+            self.assertEqual(self.warnings, count * ["the camera's aperture is round; its blades and ratio are left out"])
+
     def test_camera_clips_as_in_cycles(self):
         """Objects nearer than Clip Start or beyond Clip End shadow, and are not seen."""
         self.plane(self.shining(), z=-2)
