@@ -6,6 +6,7 @@ from mathutils import Matrix, Vector
 
 from .export_shaders import numbers
 from .placement import placement
+from .shutter import moves_blurred
 
 # Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
 TURN = Matrix.Diagonal((1, 1, -1, 1))
@@ -45,7 +46,7 @@ class SceneCamera:
     rendered, rows from the bottom, end exclusive."""
 
     def __init__(self, scene, depsgraph):
-        self.scene, self.depsgraph = scene, depsgraph
+        self.scene, self.depsgraph, self._held = scene, depsgraph, None
         render = scene.render
         scale = render.resolution_percentage / 100
         self.size = (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
@@ -69,8 +70,16 @@ class SceneCamera:
         return self.scene.camera.evaluated_get(self.depsgraph)
 
     def matrix(self):
-        """Its place at the time at which the depsgraph stands."""
-        return self._object().matrix_world.copy()
+        """Its place at the time at which the depsgraph stands, or stood at `hold_if_sharp`."""
+        return self._held or self._object().matrix_world.copy()
+
+    def is_blurred(self):
+        """Whether its motion blurs the picture."""
+        return moves_blurred(self._object())
+
+    def hold_if_sharp(self):
+        """Keeps its place where it is now, unless its motion blurs the picture."""
+        self._held = None if self.is_blurred() else self.matrix()
 
     def _window(self):
         """(x0, x1, y0, y1) of the whole frame, at distance 1 of cameras with a perspective."""
@@ -82,7 +91,7 @@ class SceneCamera:
 
     def pixel(self):
         """(width of a pixel in _window's unit, whether it grows with the distance)."""
-        if self._object().data.type == "PANO":
+        if self.is_panorama():
             return 2 * math.pi / self.size[0], True
         x0, x1, _, _ = self._window()
         return (x1 - x0) / self.size[0], self._object().data.type != "ORTHO"
@@ -99,9 +108,12 @@ class SceneCamera:
         return [] if is_round else ["the camera's aperture is round; its blades and ratio are left out"]
 
     def clip_range(self):
-        """(Clip Start, Clip End) along the axis of sight; None of panoramas."""
+        """(Clip Start, Clip End): distances, along the axis of sight but for panoramas."""
         data = self._object().data
-        return None if data.type == "PANO" else (data.clip_start, data.clip_end)
+        return data.clip_start, data.clip_end
+
+    def is_panorama(self):
+        return self._object().data.type == "PANO"
 
     def rays_to_near(self, count):
         """count x count pairs of a start and a way to Clip Start, in the camera's space, of rays across the whole frame."""

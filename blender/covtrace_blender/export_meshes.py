@@ -11,6 +11,13 @@ def positions(mesh):
     return values.reshape(-1, 3)
 
 
+def reshape(mesh, places):
+    """Moves the vertices of a mesh to (n, 3) places, where it has as many."""
+    if len(places) == len(mesh.vertices):
+        mesh.vertices.foreach_set("co", places.ravel())
+        mesh.update()
+
+
 def _triangles(mesh, name, width=3):
     values = np.empty(width * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get(name, values)

@@ -19,9 +19,10 @@ from .export_shaders import numbers
 from .export_volumes import Volumes, has_volume
 from .node_signature import hangs_on_world
 from .owner import Owner, asks_for_random, random_of
+from .part import Part
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
-from .shutter import is_blurred, shutter_times
+from .shutter import has_blurred_shape, is_blurred, shutter_times
 from .shader_nodes.light_path import RAYS
 from .texel_density import Placements
 from .uv_ranges import UvRanges
@@ -30,14 +31,6 @@ from .visibility import Visibility, hidden_from
 CONTENT = "content.pbrt"
 
 SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
-
-
-class Part:
-    """A mesh in a file, with a Variant of its material. motion: its transforms when the shutter opens and closes, or None.
-    tube_sides: sides of the tubes that it consists of; 0: it is no strands."""
-
-    def __init__(self, file, variant, motion, tube_sides):
-        self.file, self.variant, self.motion, self.tube_sides = file, variant, motion, tube_sides
 
 
 class SceneExporter:
@@ -49,7 +42,7 @@ class SceneExporter:
         self.frame = self.scene.frame_current_final
         self.warnings = []
         self.camera = SceneCamera(self.scene, depsgraph)
-        self.shutter, self.is_preview, self.still = None, False, {}
+        self.shutter, self.is_preview, self.still, self.still_shapes = None, False, {}, {}
 
     def warn(self, text):
         if text not in self.warnings:
@@ -108,20 +101,25 @@ class SceneExporter:
 
     def _look_at_close(self):
         """Where things are when the shutter closes: (matrices by key, (open, close) in frames); then back to open."""
-        render = self.scene.render
-        if not render.use_motion_blur:
+        if not self.scene.render.use_motion_blur:
             return {}, None
         frame, (opening, closing) = self.frame, shutter_times(self.scene)
-        if not all(is_blurred(instance) for _, instance in self._instances()):
+        if not self.camera.is_blurred() or not all(is_blurred(instance) and has_blurred_shape(instance.object) for _, instance in self._instances()):
             self._go_to(frame + 0.5 * (opening + closing))
         self.still = {key: instance.matrix_world.copy() for key, instance in self._instances() if not is_blurred(instance)}
+        self.still_shapes = self._shapes(is_blurred=False)
+        self.camera.hold_if_sharp()
         self._go_to(frame + closing)
         matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
         matrices["camera"] = self.camera.matrix()
-        self.closing = {instance.object.name_full: export_meshes.positions(instance.object.data)
-                        for _, instance in self._instances() if instance.object.type == "MESH" and self._is_own(instance.object)}
+        self.closing = self._shapes(is_blurred=True)
         self._go_to(frame + opening)
         return matrices, (opening, closing)
+
+    def _shapes(self, is_blurred):
+        """{object's name: where the vertices of its mesh are} of those whose changes of shape are blurred or not."""
+        return {obj.name_full: export_meshes.positions(obj.data) for obj in (instance.object for _, instance in self._instances())
+                if obj.type == "MESH" and has_blurred_shape(obj) == is_blurred and self._is_own(obj)}
 
     def _is_own(self, obj):
         """Whether its data is that of the object of its name: geometry nodes place other data under their object's name."""
@@ -222,6 +220,8 @@ class SceneExporter:
         mesh = obj.to_mesh()
         if mesh is None:
             return []
+        if obj.name_full in self.still_shapes and self._is_own(obj):
+            export_meshes.reshape(mesh, self.still_shapes[obj.name_full])
         piece, motions = self._motions(obj, mesh)
         parts = []
 

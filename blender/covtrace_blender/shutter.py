@@ -16,4 +16,18 @@ def shutter_times(scene):
 def is_blurred(instance):
     """Whether an instance shows its motion; else it stands where it is in the middle of that time."""
     things = (instance.object, instance.parent) if instance.is_instance else (instance.object,)
-    return all(getattr(getattr(thing, "cycles", None), "use_motion_blur", True) for thing in things if thing)
+    return all(moves_blurred(thing) for thing in things if thing)
+
+
+def moves_blurred(obj):
+    """The same of an object."""
+    return _of_cycles(obj, "use_motion_blur")
+
+
+def has_blurred_shape(obj):
+    """The same of an object's changes of shape."""
+    return moves_blurred(obj) and _of_cycles(obj, "use_deform_motion")
+
+
+def _of_cycles(obj, name):
+    return getattr(getattr(obj, "cycles", None), name, True)

@@ -56,6 +56,30 @@ class CameraTest(BlenderTest):
         self.export()
         self.assertEqual(self.warnings, ["the camera's Clip Start cuts what is nearer; shown whole: 'Plane.001'"])
 
+    def test_clip_end_hides_skies_around_the_camera_as_in_cycles(self):
+        """A dome whose box is around the camera; it lights as before. What is cut is told."""
+        data = self.camera.data
+        of = data if hasattr(data, "panorama_type") else data.cycles
+        of.panorama_type = "EQUIRECTANGULAR"
+        self.background.inputs["Color"].default_value = (0.2, 0.2, 0.2, 1)
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=500)
+        bpy.context.object.data.materials.append(self.shining())
+        self.plane(material(**self.MATT), size=2)
+        for data.type, data.clip_start, data.clip_end, has_sky in (
+                ("PERSP", 0.1, 100, False), ("PERSP", 0.1, 1000, True), ("PANO", 0.1, 100, False), ("PANO", 0.1, 1000, True), ("PANO", 900, 1000, False)):
+            ours, theirs = render("COVTRACE", 16), render("CYCLES", 16)
+            for part in PARTS:
+                self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.03, msg=f"{data.type} {data.clip_end}")
+            self.assertEqual(mean(ours, 0, 0, 4, 4)[0] > 0.9, has_sky)
+            self.export()
+            self.assertEqual(self.warnings, [])
+        data.type, data.clip_start, data.clip_end = "PERSP", 0.1, 100
+        bpy.data.objects.remove(bpy.data.objects["Sphere"])
+        self.camera.rotation_euler = (1.4, 0, 0)
+        bpy.data.objects["Plane"].scale = (2000,) * 3
+        self.export()
+        self.assertEqual(self.warnings, ["the camera's Clip End cuts what is farther; shown whole: 'Plane'"])
+
     def test_panoramas_show_all_directions_as_in_cycles(self):
         data = self.camera.data
         of = data if hasattr(data, "panorama_type") else data.cycles

@@ -47,6 +47,23 @@ class MotionTest(BlenderTest):
                     part = (x, y, x + 4, y + HEIGHT // 2)
                     self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.05, msg=f"{of.motion_blur_position} {part}")
 
+    def test_cameras_and_shapes_whose_motion_blur_is_off_are_sharp_as_in_cycles(self):
+        plane = self.plane(self.shining(), size=1.5)
+        self.deform(plane, range(4))
+        self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 1.0
+        for frame, y in ((0, -1), (2, 1)):
+            self.camera.location.y = y
+            self.camera.keyframe_insert("location", frame=frame)
+        self.scene.frame_set(1)
+        for camera_is_blurred, is_blurred, has_blurred_shape in ((False, True, True), (True, False, True), (True, True, False)):
+            self.camera.cycles.use_motion_blur = camera_is_blurred
+            plane.cycles.use_motion_blur, plane.cycles.use_deform_motion = is_blurred, has_blurred_shape
+            ours, theirs = render("COVTRACE", 16), render("CYCLES", 32)
+            for x, y in ((x, y) for x in range(0, 32, 8) for y in range(0, HEIGHT, 8)):
+                part = (x, y, x + 8, y + 8)
+                self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.05,
+                                       msg=f"{camera_is_blurred} {is_blurred} {has_blurred_shape} {part}")
+
     def deform(self, mesh_object, moved, distance=(2, 0, 0)):
         """Adds a shape key that moves these vertices, from no part at frame 0 to the whole way at frame 2; the
         shutter is open over both."""
