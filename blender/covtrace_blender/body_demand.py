@@ -77,7 +77,7 @@ class _NoFiles:
     def __init__(self, source):
         self.source = source
 
-    def write(self, image, key, treat=None):
+    def write(self, image, key=None, treat=None):
         return ""
 
     write_emission = write_heights = write

@@ -43,7 +43,7 @@ class MaterialExporter(SumExporter):
         self.out, self.warn = out, warn
         self.files, self.media = TextureFiles(folder, warn), Media(out)
         self.baker, self.baked = Baker(self.files.source), BakedImages()
-        self.known, self.of_objects, self.interfaces = {}, set(), set()
+        self.known, self.of_objects, self.of_scales, self.interfaces = {}, set(), set(), set()
         self.count, self.owner = 0, Owner()
 
     def variants(self, material, place=None, surface_of=lambda material_name: Surface(), owner=Owner()):
@@ -53,15 +53,19 @@ class MaterialExporter(SumExporter):
         place: what it is on, for what hangs on it. surface_of(name of the material): its Surface there; owner: its Owner.
         """
         name = material.name_full if material else None
-        key = (name, place if name in self.of_objects else None)
+        key = self._key(name, place, owner)
         if key not in self.known:
             self.owner = owner
             exported = self._on(surface_of(name), material)
             if self.hangs_on_object:
                 self.of_objects.add(name)
-                key = (name, place)
+            key = self._key(name, place, owner)
             self.known[key] = exported
         return self.known[key]
+
+    def _key(self, name, place, owner):
+        """Equal where a material is the same, by what is known to count for it."""
+        return name, place if name in self.of_objects else None, owner.scale if name in self.of_scales else None
 
     def _on(self, surface, material):
         """The Variants on a Surface, all of them on its body where one needs that."""
@@ -157,8 +161,9 @@ class MaterialExporter(SumExporter):
         if method != "BUMP":
             self.warn(f"material '{self.name}': Displacement turns the surface's normals and does not move it")
         scale = self._plain(node.inputs["Scale"])
-        if node.space == "OBJECT" and self.owner.scale != 1:
-            scale, self.hangs_on_object = scale * self.owner.scale, True
+        if node.space == "OBJECT":
+            self.of_scales.add(material.name_full)
+            scale *= self.owner.scale
         return node.inputs["Height"], scale
 
     def _ask_for_body_of_uv_maps(self, node):

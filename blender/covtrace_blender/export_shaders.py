@@ -42,15 +42,15 @@ class ShaderWriter(SocketReader):
                                 lambda pixels: treat(value.apply(pixels)))
         return self._declare(kind, value, file)
 
-    def _declare(self, kind, value, file):
-        """Declares the texture of an image that lies in a file."""
+    def _declare(self, kind, value, file, scale=1.0):
+        """Declares the texture of an image that lies in a file, `scale` times."""
         name = f"texture {self.count}"
         self.count += 1
         su, sv, du, dv = value.mapping
         self.out.write(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{file}" '
                        f'"string encoding" "linear" "float uscale" {su:.9g} "float vscale" {sv:.9g} '
                        f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}" '
-                       f'"string wrap" "{value.wrap}"\n')
+                       f'"string wrap" "{value.wrap}" "float scale" {scale:.9g}\n')
         return name
 
     def _colour(self, parameter, value, treat=lambda v: v, key=""):
@@ -182,8 +182,8 @@ class ShaderWriter(SocketReader):
             return []
         if not height.image:
             return []
-        file = self.files.write_heights(height.image, scale)
-        return [f'"texture displacement" "{self._declare("float", height, file)}"']
+        name = self._declare("float", height, self.files.write_heights(height.image), scale)
+        return [f'"texture displacement" "{name}"']
 
     def _scattering(self, node, prefix=""):
         """Parameters of metal and glass whose facets pass light on to each other, where a node's distribution says so."""

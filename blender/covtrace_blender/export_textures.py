@@ -135,11 +135,11 @@ class TextureFiles:
             self.files[full_key] = name
         return self.files[full_key]
 
-    def write_heights(self, image, scale):
-        """The file of a grey image's heights times `scale`, of any size and sign."""
-        full_key = (image.name_full, ("heights", scale))
+    def write_heights(self, image):
+        """The file of a grey image's heights, of any size and sign."""
+        full_key = (image.name_full, "heights")
         if full_key not in self.files:
             name = f"texture{len(self.files)}.pfm"
-            write_pfm(os.path.join(self.folder, name), self.source(image)[..., :3] * scale)
+            write_pfm(os.path.join(self.folder, name), self.source(image)[..., :3])
             self.files[full_key] = name
         return self.files[full_key]

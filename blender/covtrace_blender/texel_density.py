@@ -40,9 +40,9 @@ class Placements:
         return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
 
     def scale(self, obj):
-        """The mean scale of a mesh in the world; of instances that of the first."""
+        """The mean scale of a mesh in the world; of instances that of the first. To five digits: turns do not change it."""
         matrices = self._matrices.get(self.key(obj))
-        return float(abs(np.linalg.det(matrices[0][:3, :3])) ** (1 / 3)) if matrices else 1.0
+        return float(f"{abs(np.linalg.det(matrices[0][:3, :3])) ** (1 / 3):.5g}") if matrices else 1.0
 
     def density(self, obj, mesh):
         """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, or their share of that, in steps of two, and the

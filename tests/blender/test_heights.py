@@ -54,6 +54,18 @@ class HeightsTest(NodeTilesTest):
         self.export()
         self.assertEqual(self.warnings, ["material 'both': Displacement turns the surface's normals and does not move it"])
 
+    def test_objects_share_the_heights_of_displacement(self):
+        """In one file for all scales, and one material for what is only turned."""
+        tree = Tree("heights")
+        height = tree.node("Math", {"operation": "SINE"}, {0: tree.number()})
+        tree.link(tree.node("Displacement", {}, {"Height": height}), 0, tree.tree.nodes["Material Output"].inputs["Displacement"])
+        for number, (turn, scale) in enumerate(((0, 1), (0.4, 1), (1.3, 1), (0, 2), (0, 3))):
+            plane = self.tile(number, tree.material)
+            plane.rotation_euler, plane.scale = (turn, 2 * turn, 3 * turn), (scale,) * 3
+        files = []
+        text = self.export(lambda folder: files.extend(folder.glob("*.pfm")))
+        self.assertEqual((len(files), text.count('"float scale" 2'), text.count("texture displacement")), (1, 1, 3))
+
     def test_heights_follow_uv_maps(self):
         """Smooth meshes are among them, where pbrt takes v to be as long as u and left of it."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
