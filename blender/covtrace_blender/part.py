@@ -1,4 +1,4 @@
-"""What one material is on, of what is written of an object."""
+"""Meshes in files, of which each has one material; objects consist of them."""
 
 
 class Part:

@@ -20,12 +20,12 @@ def is_blurred(instance):
 
 
 def moves_blurred(obj):
-    """The same of an object."""
+    """Whether an object shows its motion, by its own setting."""
     return _of_cycles(obj, "use_motion_blur")
 
 
 def has_blurred_shape(obj):
-    """The same of an object's changes of shape."""
+    """Whether an object shows its changes of shape as they move."""
     return moves_blurred(obj) and _of_cycles(obj, "use_deform_motion")
 
 
