@@ -58,22 +58,79 @@ Rgb even_glow(const Medium& medium, float column) {
     return sum;
 }
 
+/// Columns up to `column` that are even in what reaches the start of light that is everywhere the
+/// same, of the channels that absorb in the mean.
+class EvenLight {
+  public:
+    EvenLight(const Medium& medium, float column) : column_(column) {
+        const Rgb extinction = medium.extinction();
+        for (int c = 0; c < 3; ++c) {
+            const float whole = -std::expm1(-extinction[c] * column);
+            if (medium.absorption[c] > 0 && whole > 0) channels_[count_++] = {extinction[c], whole};
+        }
+    }
+    bool is_empty() const { return count_ == 0; }
+    float density(float column) const {
+        return mean([&](const Channel& c) {
+            return c.extinction * std::exp(-c.extinction * column) / c.whole;
+        });
+    }
+    /// Where the share `u` of the light comes from columns below; u in [0, 1).
+    float sample(float u) const {
+        // Each channel alone bounds it
+        float low = column_, high = 0;
+        for (size_t i = 0; i < count_; ++i) {
+            const Channel& c = channels_[i];
+            const float alone = std::min(-std::log1p(-u * c.whole) / c.extinction, column_);
+            low = std::min(low, alone);
+            high = std::max(high, alone);
+        }
+        float at = low;
+        constexpr float kClose = 1e-6f;
+        for (int i = 0; i < 24 && high - low > kClose * high; ++i) {
+            const float error = share_below(at) - u;
+            if (std::abs(error) <= kClose * u) break;
+            (error < 0 ? low : high) = at;
+            const float newton = at - error / density(at);
+            at = newton > low && newton < high ? newton : 0.5f * (low + high);
+        }
+        return at;
+    }
+
+  private:
+    struct Channel {
+        float extinction, whole;  ///< the latter of what reaches the start along all of the way
+    };
+    template <class F>
+    float mean(const F& of_channel) const {
+        float sum = 0;
+        for (size_t i = 0; i < count_; ++i) sum += of_channel(channels_[i]);
+        return sum / float(count_);
+    }
+    float share_below(float column) const {
+        return mean(
+            [&](const Channel& c) { return -std::expm1(-c.extinction * column) / c.whole; });
+    }
+
+    float column_;
+    std::array<Channel, 3> channels_{};
+    size_t count_ = 0;
+};
+
 Rgb glow_along(const Medium& medium, const MediumWay& way, float column, float length, float u) {
-    const Rgb extinction = medium.extinction();
-    const float mean = sum(extinction) / 3;
-    if (!(mean * column > 0)) return {};
+    const EvenLight even(medium, column);
+    if (even.is_empty()) return {};
     constexpr int kPlaces = 4;
     std::array<float, kPlaces> columns, distances;
-    const float whole = -std::expm1(-mean * column);
-    for (int i = 0; i < kPlaces; ++i)
-        columns[size_t(i)] = -std::log1p(-(float(i) + u) / kPlaces * whole) / mean;
+    for (int i = 0; i < kPlaces; ++i) columns[size_t(i)] = even.sample((float(i) + u) / kPlaces);
     way.distances(columns, length, distances);
     Rgb light;
     for (size_t i = 0; i < kPlaces; ++i) {
         if (!(distances[i] < length)) continue;
-        const float density = mean * std::exp(-mean * columns[i]) / whole;
-        light += medium.glow->at(way.point(distances[i])) * transmittance(medium, columns[i]) *
-                 (1 / (kPlaces * density));
+        const float density = kPlaces * even.density(columns[i]);
+        if (density > 0)
+            light += medium.glow->at(way.point(distances[i])) * transmittance(medium, columns[i]) *
+                     (1 / density);
     }
     return light * medium.absorption;
 }

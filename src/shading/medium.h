@@ -54,7 +54,8 @@ Rgb transmittance(const Medium& medium, float column);
 /// Radiance that the medium emits along a ray over the given length and that reaches its start:
 /// absorption * emission * (1 - transmittance) / extinction, in closed form. Of a glow an estimate
 /// by four places, u in [0, 1): they are even in what reaches the start of light that is everywhere
-/// the same, one in each quarter.
+/// the same, of all channels that absorb in the mean, one in each quarter. So no channel's weight
+/// is more than their number times as large as that of its own places, whatever the colours.
 Rgb emitted_along(const Medium& medium, const MediumWay& way, float length, float u);
 
 /// The way of a ray through a piece of medium: it scatters in it, or leaves.

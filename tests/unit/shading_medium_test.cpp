@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 
 namespace covtrace {
 namespace {
@@ -71,6 +73,32 @@ TEST(Medium, ALampThatIsNotSampledChangesNothing) {
         EXPECT_EQ(alone.scatters, beside.scatters);
         EXPECT_EQ(alone.distance, beside.distance);
         EXPECT_EQ(alone.weight, beside.weight);
+    }
+}
+
+TEST(Medium, GlowOfAColouredMediumHasABoundedWeight) {
+    // Behind a column of 10 nothing of red is left and most of green: places by their mean would
+    // see green light from there rarely, 40000 times as bright
+    const DensityGrid cube(Transform(), {{0, 0, 0}, {1, 1, 10}},
+                           {{0, 0, 0}, {1, 1, 10}, [](const LatticePlace&) { return 1.0f; }});
+    const Glow glow{std::make_shared<const DensityGrid>(cube), {Rgb(0), Rgb{1, 2, 3}}};
+    const Medium even{{3, 0.03f, 0.3f}, {0, 0, 0.1f}, {1, 2, 3}, 0, &cube};
+    Medium varied = even;
+    varied.glow = &glow;
+    const MediumWay way(even, {0.5f, 0.5f, -1}, {0, 0, 1});
+    const Rgb expected = emitted_along(even, way, 20, 0);
+    constexpr int kSteps = 4000;
+    std::array<double, 3> sum{}, most{};
+    for (int i = 0; i < kSteps; ++i) {
+        const Rgb light = emitted_along(varied, way, 20, (float(i) + 0.5f) / kSteps);
+        for (int c = 0; c < 3; ++c) {
+            sum[size_t(c)] += double(light[c]) / kSteps;
+            most[size_t(c)] = std::max(most[size_t(c)], double(light[c]));
+        }
+    }
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(sum[size_t(c)], expected[c], 2e-3 * double(expected[c])) << c;
+        EXPECT_LT(most[size_t(c)], 3 * double(expected[c])) << c;
     }
 }
 
