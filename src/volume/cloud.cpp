@@ -36,7 +36,8 @@ float Cloud::at(Vec3 p) const {
     return clamp01(clamp01(height * 4.5f * density * shape) + 2 * std::max(0.0f, 0.5f - p.y));
 }
 
-DensityGrid cloud_grid(const Cloud& cloud, const Transform& cloud_from_world) {
+DensityGrid cloud_grid(const Cloud& cloud, const Transform& cloud_from_world,
+                       const SourceLocation& where) {
     // Five octaves, each 1.99 times as fast as the one before: three cells for a period of the last
     constexpr float kCellsPerPeriod = 3, kFastest = 15.7f, kFewest = 16, kMost = 192;
     const Vec3 side = cloud.bounds.diagonal();
@@ -65,7 +66,7 @@ DensityGrid cloud_grid(const Cloud& cloud, const Transform& cloud_from_world) {
                       size_t(n[0]) * (size_t(at[1]) + size_t(n[1]) * size_t(at[2]))];
     };
     return {lattice_from_cloud * cloud_from_world, Bounds3{{0, 0, 0}, end},
-            Lattice{{}, {n[0] - 1, n[1] - 1, n[2] - 1}, value}};
+            Lattice{{}, {n[0] - 1, n[1] - 1, n[2] - 1}, value}, where};
 }
 
 }  // namespace covtrace

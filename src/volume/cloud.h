@@ -18,6 +18,7 @@ struct Cloud {
 
 /// The cloud's density as a grid, fine enough for its finest noise up to 192 cells along the
 /// longest side. Errors: those of DensityGrid.
-DensityGrid cloud_grid(const Cloud& cloud, const Transform& cloud_from_world);
+DensityGrid cloud_grid(const Cloud& cloud, const Transform& cloud_from_world,
+                       const SourceLocation& where = {});
 
 }  // namespace covtrace

@@ -19,8 +19,9 @@ class CellWalk {
     CellWalk(Vec3 o, Vec3 d, float t, float side, const LatticePlace& count)
         : o_(o), d_(d), side_(side) {
         for (int a = 0; a < 3; ++a) {
+            // In this order neither is it a place that is no number
             const float place = std::floor((o[a] + t * d[a]) / side);
-            cell_[size_t(a)] = int(std::clamp(place, 0.0f, float(count[size_t(a)] - 1)));
+            cell_[size_t(a)] = int(std::max(0.0f, std::min(place, float(count[size_t(a)] - 1))));
             set_next(a);
         }
     }
@@ -98,10 +99,17 @@ struct DensityGrid::Piece {
     }
 };
 
-DensityGrid::DensityGrid(const Transform& from_space, const Bounds3& bounds, const Lattice& lattice)
+DensityGrid::DensityGrid(const Transform& from_space, const Bounds3& bounds, const Lattice& lattice,
+                         const SourceLocation& where)
     : bounds_(bounds) {
     for (size_t r = 0; r < 3; ++r)
-        for (size_t c = 0; c < 4; ++c) from_space_[r][c] = float(from_space.matrix().m[r][c]);
+        for (size_t c = 0; c < 4; ++c) {
+            from_space_[r][c] = float(from_space.matrix().m[r][c]);
+            if (!std::isfinite(from_space_[r][c]))
+                throw Error(
+                    ErrorKind::scene, where,
+                    std::string(kWhat) + " has cells that are too small for single precision");
+        }
     // Cells begin a place before the first value, since values outside of the box are 0
     constexpr double kMostBlocks = 1 << 28;
     double blocks = 1;
@@ -110,49 +118,66 @@ DensityGrid::DensityGrid(const Transform& from_space, const Bounds3& bounds, con
         blocks_[a] = (lattice.last[a] - origin_[a]) / kCells + 1;
         blocks *= blocks_[a];
     }
-    if (blocks > kMostBlocks) throw Error(ErrorKind::limit, std::string(kWhat) + " is too large");
-    const MemoryReservation room(size_t(blocks) * sizeof(block_[0]), kWhat);
+    if (blocks > kMostBlocks)
+        throw Error(ErrorKind::limit, where, std::string(kWhat) + " is too large");
+    const MemoryReservation room(size_t(blocks) * sizeof(block_[0]), kWhat, where);
     block_.assign(size_t(blocks), kEmpty);
-    fill(lattice);
+    fill(lattice, where);
 }
 
-void DensityGrid::fill(const Lattice& lattice) {
-    std::vector<float> values(kBlockValues);
+void DensityGrid::fill(const Lattice& lattice, const SourceLocation& where) {
+    constexpr int kTogether = 16;  // blocks along each side, looked at at once
+    LatticePlace corner{}, block;
+    for (corner[2] = 0; corner[2] < blocks_[2]; corner[2] += kTogether)
+        for (corner[1] = 0; corner[1] < blocks_[1]; corner[1] += kTogether)
+            for (corner[0] = 0; corner[0] < blocks_[0]; corner[0] += kTogether) {
+                LatticePlace first, last, end;
+                for (size_t a = 0; a < 3; ++a) {
+                    first[a] = origin_[a] + kCells * corner[a];
+                    last[a] = first[a] + kCells * kTogether;
+                    end[a] = std::min(corner[a] + kTogether, blocks_[a]);
+                }
+                if (lattice.is_empty && lattice.is_empty(first, last)) continue;
+                for (block[2] = corner[2]; block[2] < end[2]; ++block[2])
+                    for (block[1] = corner[1]; block[1] < end[1]; ++block[1])
+                        for (block[0] = corner[0]; block[0] < end[0]; ++block[0])
+                            fill_block(block, lattice, where);
+            }
+    values_.shrink_to_fit();
+}
+
+void DensityGrid::fill_block(const LatticePlace& block, const Lattice& lattice,
+                             const SourceLocation& where) {
+    LatticePlace first, last;
+    for (size_t a = 0; a < 3; ++a) {
+        first[a] = origin_[a] + kCells * block[a];
+        last[a] = first[a] + kCells;
+    }
+    if (lattice.is_empty && lattice.is_empty(first, last)) return;
     const auto inside = [&](const LatticePlace& p) {
         for (size_t a = 0; a < 3; ++a)
             if (p[a] < lattice.first[a] || p[a] > lattice.last[a]) return false;
         return true;
     };
-    LatticePlace block{};
-    for (block[2] = 0; block[2] < blocks_[2]; ++block[2])
-        for (block[1] = 0; block[1] < blocks_[1]; ++block[1])
-            for (block[0] = 0; block[0] < blocks_[0]; ++block[0]) {
-                LatticePlace first, last;
-                for (size_t a = 0; a < 3; ++a) {
-                    first[a] = origin_[a] + kCells * block[a];
-                    last[a] = first[a] + kCells;
-                }
-                if (lattice.is_empty && lattice.is_empty(first, last)) continue;
-                float most = 0;
-                float* value = values.data();
-                LatticePlace p{};
-                for (p[2] = first[2]; p[2] <= last[2]; ++p[2])
-                    for (p[1] = first[1]; p[1] <= last[1]; ++p[1])
-                        for (p[0] = first[0]; p[0] <= last[0]; ++p[0]) {
-                            *value = inside(p) ? std::max(0.0f, lattice.value(p)) : 0.0f;
-                            most = std::max(most, *value++);
-                        }
-                if (!(most > 0)) continue;
-                if (values_.size() + kBlockValues > values_.capacity()) {
-                    const size_t larger = std::max<size_t>(64, 2 * values_.size() / kBlockValues);
-                    const MemoryReservation room(larger * kBlockValues * sizeof(float), kWhat);
-                    values_.reserve(larger * kBlockValues);
-                }
-                block_[index(block)] = int32_t(values_.size() / kBlockValues);
-                values_.insert(values_.end(), values.begin(), values.end());
-                largest_ = std::max(largest_, most);
+    std::array<float, kBlockValues> values;
+    float most = 0;
+    float* value = values.data();
+    LatticePlace p{};
+    for (p[2] = first[2]; p[2] <= last[2]; ++p[2])
+        for (p[1] = first[1]; p[1] <= last[1]; ++p[1])
+            for (p[0] = first[0]; p[0] <= last[0]; ++p[0]) {
+                *value = inside(p) ? std::max(0.0f, lattice.value(p)) : 0.0f;
+                most = std::max(most, *value++);
             }
-    values_.shrink_to_fit();
+    if (!(most > 0)) return;
+    if (values_.size() + kBlockValues > values_.capacity()) {
+        const size_t larger = std::max<size_t>(64, 2 * values_.size() / kBlockValues);
+        const MemoryReservation room(larger * kBlockValues * sizeof(float), kWhat, where);
+        values_.reserve(larger * kBlockValues);
+    }
+    block_[index(block)] = int32_t(values_.size() / kBlockValues);
+    values_.insert(values_.end(), values.begin(), values.end());
+    largest_ = std::max(largest_, most);
 }
 
 size_t DensityGrid::bytes() const {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/error.h"
 #include "core/transform.h"
 #include "core/vec.h"
 
@@ -19,7 +20,8 @@ struct Lattice {
     LatticePlace first, last;  ///< of the box, both within it
     std::function<float(LatticePlace)> value;
     /// Whether all values of the places from `first` to `last` are 0, where that is known without
-    /// looking at each: of large boxes that are mostly empty. May be empty.
+    /// looking at each: of large boxes that are mostly empty. They reach over 8 or 128 cells along
+    /// each side. May be empty.
     std::function<bool(LatticePlace first, LatticePlace last)> is_empty = {};
 };
 
@@ -31,8 +33,10 @@ struct Lattice {
 class DensityGrid {
   public:
     /// `from_space` takes points to the lattice's coordinates; `bounds` are in these. Values below
-    /// 0 count as 0. Errors: Error(limit) where the process may not hold them.
-    DensityGrid(const Transform& from_space, const Bounds3& bounds, const Lattice& lattice);
+    /// 0 count as 0. Errors, at `where`: Error(limit) where the process may not hold them,
+    /// Error(scene) for transforms whose numbers are out of single precision's range.
+    DensityGrid(const Transform& from_space, const Bounds3& bounds, const Lattice& lattice,
+                const SourceLocation& where = {});
 
     /// The density at a point.
     float at(Vec3 point) const;
@@ -57,7 +61,8 @@ class DensityGrid {
     static constexpr size_t kBlockValues = size_t(kPlaces) * kPlaces * kPlaces;
     static constexpr int32_t kEmpty = -1;
 
-    void fill(const Lattice& lattice);
+    void fill(const Lattice& lattice, const SourceLocation& where);
+    void fill_block(const LatticePlace& block, const Lattice& lattice, const SourceLocation& where);
     /// Calls visit(piece) for every piece of a ray within a cell of blocks that are not empty,
     /// until it returns false.
     template <class Visit>

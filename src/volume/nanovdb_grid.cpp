@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <stdexcept>
 #include <type_traits>
+#include <vector>
 
 #include "core/memory_limit.h"
 
@@ -24,15 +28,21 @@ Error refusal(const SourceLocation& where, const std::string& text) {
     return {ErrorKind::scene, where, text};
 }
 
-/// Whether all nodes of a grid lie within its bytes, one after the other: the library follows the
-/// offsets of a file without looking at them.
+/// Whether all nodes of a grid lie within its bytes and are no more than fit there: the library
+/// follows the offsets of a file without looking at them, and many of them may lead to one node.
 template <class Grid>
 bool is_sound(const Grid& grid, size_t bytes) {
     const auto* begin = reinterpret_cast<const uint8_t*>(&grid);
+    size_t left = bytes;
     const auto lies_within = [&](const void* node, size_t size) {
         const auto at = reinterpret_cast<uintptr_t>(node) - reinterpret_cast<uintptr_t>(begin);
         return at < bytes && size <= bytes - at &&
                reinterpret_cast<uintptr_t>(node) % NANOVDB_DATA_ALIGNMENT == 0;
+    };
+    const auto takes = [&](size_t size) {
+        if (size > left) return false;
+        left -= size;
+        return true;
     };
     if (bytes < sizeof(Grid) + sizeof(grid.tree()) || grid.gridSize() > bytes) return false;
     if (!lies_within(&grid.tree(), sizeof(grid.tree()))) return false;
@@ -47,14 +57,14 @@ bool is_sound(const Grid& grid, size_t bytes) {
         const auto* tile = root.data()->tile(i);
         if (!tile->isChild()) continue;
         const auto* upper = root.data()->getChild(tile);
-        if (!lies_within(upper, sizeof(*upper))) return false;
+        if (!lies_within(upper, sizeof(*upper)) || !takes(sizeof(*upper))) return false;
         for (auto u = upper->beginChild(); u; ++u) {
             const auto& lower = *u;
-            if (!lies_within(&lower, sizeof(lower))) return false;
+            if (!lies_within(&lower, sizeof(lower)) || !takes(sizeof(lower))) return false;
             for (auto l = lower.beginChild(); l; ++l) {
                 const auto& leaf = *l;
                 if (!lies_within(&leaf, sizeof(leaf)) ||
-                    !lies_within(&leaf, leaf.data()->memUsage()))
+                    !lies_within(&leaf, leaf.data()->memUsage()) || !takes(leaf.data()->memUsage()))
                     return false;
             }
         }
@@ -62,9 +72,73 @@ bool is_sound(const Grid& grid, size_t bytes) {
     return true;
 }
 
-/// Takes points of the file's world to the grid's lattice.
+/// Walks through a file's parts before the library does, which goes wherever their sizes lead: back
+/// to a part that was read, or beyond the end. Errors: std::runtime_error.
+class FileCheck {
+  public:
+    explicit FileCheck(const std::string& bytes) : bytes_(bytes) {}
+    void run() {
+        nanovdb::io::Header header;
+        while (left() >= sizeof(header)) {
+            header = take<nanovdb::io::Header>();
+            if (header.magic != NANOVDB_MAGIC_NUMBER) return;  // the library says so
+            std::vector<nanovdb::io::MetaData> grids;
+            for (int i = 0; i < header.gridCount; ++i) {
+                grids.push_back(take<nanovdb::io::MetaData>());
+                skip(grids.back().nameSize);
+                if (grids.back().nameSize == 0 || bytes_[at_ - 1] != '\0')
+                    throw std::runtime_error("a grid's name has no end");
+            }
+            for (const nanovdb::io::MetaData& grid : grids) {
+                const size_t begin = at_;
+                check_grid(grid, header.codec);
+                at_ = begin;
+                skip(grid.fileSize);
+            }
+        }
+    }
+
+  private:
+    size_t left() const { return bytes_.size() - at_; }
+    void skip(uint64_t size) {
+        if (size > left()) throw std::runtime_error("it ends too early");
+        at_ += size;
+    }
+    template <class T>
+    T take() {
+        T value;
+        const char* from = bytes_.data() + at_;
+        skip(sizeof(T));
+        std::memcpy(static_cast<void*>(&value), from, sizeof(T));
+        return value;
+    }
+    void check_grid(const nanovdb::io::MetaData& grid, nanovdb::io::Codec codec) {
+        if (codec == nanovdb::io::Codec::NONE) {
+            skip(grid.gridSize);
+        } else if (codec == nanovdb::io::Codec::ZIP) {
+            skip(take<uint64_t>());
+        } else if (codec == nanovdb::io::Codec::BLOSC) {
+            // The decoder trusts the sizes in its data's own header
+            for (uint64_t wanted = grid.gridSize; wanted > 0;) {
+                const auto size = take<uint64_t>();
+                const char* data = bytes_.data() + at_;
+                skip(size);
+                const uint64_t piece = std::min<uint64_t>(wanted, nanovdb::io::Internal::MAX_SIZE);
+                size_t holds = 0;
+                if (blosc_cbuffer_validate(data, size, &holds) != 0 || holds != piece)
+                    throw std::runtime_error("its compressed values are damaged");
+                wanted -= piece;
+            }
+        }
+    }
+
+    const std::string& bytes_;
+    size_t at_ = 0;
+};
+
+/// Takes points of the file's world to the grid's lattice, whose places count from `first` on.
 template <class Grid>
-std::optional<Transform> lattice_from_file(const Grid& grid) {
+std::optional<Transform> lattice_from_file(const Grid& grid, const LatticePlace& first) {
     const auto image = [&](double x, double y, double z) {
         return grid.worldToIndex(nanovdb::Vec3d(x, y, z));
     };
@@ -73,9 +147,39 @@ std::optional<Transform> lattice_from_file(const Grid& grid) {
     Matrix4 m;
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) m.m[size_t(r)][size_t(c)] = axes[size_t(c)][r] - origin[r];
-        m.m[size_t(r)][3] = origin[r];
+        m.m[size_t(r)][3] = origin[r] - first[size_t(r)];
     }
     return Transform::from_matrix(m);
+}
+
+/// The cube of 128 places along each side that holds one.
+LatticePlace cube_of(const nanovdb::Coord& c) {
+    return {c[0] >> 7, c[1] >> 7, c[2] >> 7};
+}
+
+/// The cubes in which values may be above 0; empty where that is so in most of the space.
+template <class Grid>
+std::optional<std::set<LatticePlace>> filled_cubes(const Grid& grid) {
+    const auto& root = grid.tree().root();
+    if (float(root.background()) > 0) return std::nullopt;
+    std::set<LatticePlace> cubes;
+    for (uint32_t i = 0; i < root.data()->mTableSize; ++i) {
+        const auto* tile = root.data()->tile(i);
+        if (!tile->isChild()) {
+            if (float(tile->value) > 0) return std::nullopt;
+            continue;
+        }
+        const auto& upper = *root.data()->getChild(tile);
+        using Upper = std::decay_t<decltype(upper)>;
+        for (uint32_t n = 0; n < Upper::SIZE; ++n) {
+            if (!upper.data()->mChildMask.isOn(n) && !(float(upper.data()->mTable[n].value) > 0))
+                continue;
+            const LatticePlace first = cube_of(tile->origin());
+            const nanovdb::Coord at = Upper::OffsetToLocalCoord(n);
+            cubes.insert({first[0] + at[0], first[1] + at[1], first[2] + at[2]});
+        }
+    }
+    return cubes;
 }
 
 template <class Value>
@@ -83,38 +187,50 @@ std::shared_ptr<const DensityGrid> densities(const nanovdb::NanoGrid<Value>& gri
                                              const Transform& file_from_world,
                                              const SourceLocation& where) {
     if (!is_sound(grid, bytes)) throw refusal(where, "the file is damaged: a node lies outside");
-    const auto lattice_from_world = lattice_from_file(grid);
-    if (!lattice_from_world) throw refusal(where, "the grid's own transform is singular");
     if (grid.activeVoxelCount() == 0) throw refusal(where, "the grid is empty");
     const nanovdb::CoordBBox box = grid.indexBBox();
-    // Sums and blocks of such places stay within whole numbers
-    constexpr int kFarthest = 1 << 28;
-    LatticePlace first, last;
-    for (int a = 0; a < 3; ++a) {
-        first[size_t(a)] = box.min()[a];
-        last[size_t(a)] = box.max()[a];
-        if (box.min()[a] < -kFarthest || box.max()[a] > kFarthest || box.min()[a] > box.max()[a])
+    // Places count from a leaf's corner on: far from the lattice's origin single precision is
+    // coarse
+    constexpr int kFarthest = 1 << 28, kLeaf = 8;
+    LatticePlace corner, last, first;
+    for (int i = 0; i < 3; ++i) {
+        const auto a = size_t(i);
+        if (box.min()[i] < -kFarthest || box.max()[i] > kFarthest || box.min()[i] > box.max()[i])
             throw refusal(where, "the grid's bounds are out of range");
+        corner[a] = box.min()[i] & -kLeaf;
+        first[a] = box.min()[i] - corner[a];
+        last[a] = box.max()[i] - corner[a];
     }
+    const auto lattice_from_world = lattice_from_file(grid, corner);
+    if (!lattice_from_world) throw refusal(where, "the grid's own transform is singular");
     const Bounds3 bounds{{float(first[0]), float(first[1]), float(first[2])},
                          {float(last[0] + 1), float(last[1] + 1), float(last[2] + 1)}};
     const auto accessor = grid.getAccessor();
+    const auto coordinates = [&](const LatticePlace& p) {
+        return nanovdb::Coord(p[0] + corner[0], p[1] + corner[1], p[2] + corner[2]);
+    };
     const auto value = [&](const LatticePlace& p) {
-        const float v = float(accessor.getValue(nanovdb::Coord(p[0], p[1], p[2])));
+        const float v = float(accessor.getValue(coordinates(p)));
         return v > 0 && v <= std::numeric_limits<float>::max() ? v : 0.0f;
     };
     // Values of places that share their numbers but for the last three bits are in one leaf, or all
-    // the same
+    // the same. A box touches no more of such cubes, or of those of filled_cubes(), than one at
+    // each of its corners.
+    const auto filled = filled_cubes(grid);
     const auto is_empty = [&](const LatticePlace& from, const LatticePlace& to) {
+        const bool is_block = to[0] - from[0] <= kLeaf;
+        if (!is_block && !filled) return false;
         for (int i = 0; i < 8; ++i) {
             const LatticePlace p{(i & 1) ? to[0] : from[0], (i & 2) ? to[1] : from[1],
                                  (i & 4) ? to[2] : from[2]};
-            if (accessor.probeLeaf(nanovdb::Coord(p[0], p[1], p[2])) || value(p) > 0) return false;
+            const nanovdb::Coord c = coordinates(p);
+            if (is_block ? accessor.probeLeaf(c) || value(p) > 0 : filled->contains(cube_of(c)))
+                return false;
         }
         return true;
     };
     return std::make_shared<const DensityGrid>(*lattice_from_world * file_from_world, bounds,
-                                               Lattice{first, last, value, is_empty});
+                                               Lattice{first, last, value, is_empty}, where);
 }
 
 }  // namespace
@@ -125,6 +241,7 @@ std::shared_ptr<const DensityGrid> read_nanovdb(const std::string& bytes, const 
     nanovdb::GridHandle<nanovdb::HostBuffer> handle;
     try {
         std::istringstream metadata(bytes), grids(bytes);
+        FileCheck(bytes).run();
         size_t size = 0;
         bool is_there = false;
         for (const auto& grid : nanovdb::io::readGridMetaData(metadata))
@@ -145,6 +262,10 @@ std::shared_ptr<const DensityGrid> read_nanovdb(const std::string& bytes, const 
         throw refusal(where, "the file is no grid of NanoVDB that can be read: " + text);
     }
     const size_t size = handle.size();
+    // The library goes on to the next grid until it meets the first one
+    const auto* header = reinterpret_cast<const nanovdb::GridData*>(handle.data());
+    if (size < sizeof(*header) || header->mGridIndex != 0)
+        throw refusal(where, "the file is damaged: it is not its first grid");
     if (const auto* grid = handle.grid<float>())
         return densities(*grid, size, file_from_world, where);
     if (const auto* grid = handle.grid<nanovdb::Fp4>())

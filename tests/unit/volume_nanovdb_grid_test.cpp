@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <sstream>
 
 #include "core/rng.h"
@@ -78,18 +81,124 @@ TEST(NanovdbGrid, IsReadInAllKinds) {
     }
 }
 
+/// Whether there is a grid in the bytes; looks along a ray.
+bool read(const std::string& bytes) {
+    try {
+        const auto grid = read_nanovdb(bytes, "density", Transform(), {});
+        if (grid) grid->column({-20, 2, 3}, {1, 0, 0}, kInfinity);
+        return grid != nullptr;
+    } catch (const Error& e) {
+        EXPECT_TRUE(e.kind() == ErrorKind::scene || e.kind() == ErrorKind::limit);
+        return false;
+    }
+}
+
+/// A handle of a grid named "density" of a cube of `side` places from `first` on, all 1.
+nanovdb::GridHandle<> cube(int first, int side, double cell) {
+    nanovdb::GridBuilder<float> builder(0, nanovdb::GridClass::FogVolume);
+    auto accessor = builder.getAccessor();
+    for (int x = 0; x < side; ++x)
+        for (int y = 0; y < side; ++y)
+            for (int z = 0; z < side; ++z)
+                accessor.setValue(nanovdb::Coord(first + x, first + y, first + z), 1.0f);
+    return builder.getHandle(cell, nanovdb::Vec3d(0), "density");
+}
+
+std::string file_of(nanovdb::GridHandle<> handle) {
+    std::ostringstream out(std::string(4096, '\0'));
+    std::vector<nanovdb::GridHandle<>> handles;
+    handles.push_back(std::move(handle));
+    nanovdb::io::writeGrids(out, handles);
+    return out.str();
+}
+
+TEST(NanovdbGrid, LiesExactlyFarFromItsLatticesOrigin) {
+    // A cell there is smaller than the roundings of the lattice's coordinates in single precision;
+    // the scene's transform brings it to its own origin
+    constexpr int kFirst = 50'000'003;
+    const auto grid = read_nanovdb(file_of(cube(kFirst, 16, 0.5)), "density",
+                                   Transform({{{{1, 0, 0, 0.5 * kFirst},
+                                                {0, 1, 0, 0.5 * kFirst},
+                                                {0, 0, 1, 0.5 * kFirst},
+                                                {0, 0, 0, 1}}}},
+                                             {{{{1, 0, 0, -0.5 * kFirst},
+                                                {0, 1, 0, -0.5 * kFirst},
+                                                {0, 0, 1, -0.5 * kFirst},
+                                                {0, 0, 0, 1}}}}),
+                                   {});
+    ASSERT_TRUE(grid);
+    for (const float x : {0.0f, 0.1f, 3.7f, 7.5f}) EXPECT_NEAR(grid->at({x, 4, 4}), 1, 1e-4) << x;
+    EXPECT_NEAR(grid->at({7.75f, 4, 4}), 0.5f, 1e-3);
+    EXPECT_EQ(grid->at({-0.1f, 4, 4}), 0);
+    EXPECT_NEAR(grid->column({-3, 4, 4}, {1, 0, 0}, kInfinity), 7.75f, 1e-3);
+}
+
+TEST(NanovdbGrid, PlacesFarApartAreReadSoon) {
+    // Space between them has 64 million blocks of cells
+    nanovdb::GridBuilder<float> builder(0, nanovdb::GridClass::FogVolume);
+    auto accessor = builder.getAccessor();
+    for (const int at : {0, 1000, 3150, 3201})
+        accessor.setValue(nanovdb::Coord(at, at, at), float(1 + at % 7));
+    const auto begin = std::chrono::steady_clock::now();
+    const auto grid = read_nanovdb(file_of(builder.getHandle(1, nanovdb::Vec3d(0), "density")),
+                                   "density", Transform(), {});
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
+    ASSERT_TRUE(grid);
+    for (const int at : {0, 1000, 3150, 3201})
+        EXPECT_EQ(grid->at(Vec3{1, 1, 1} * float(at)), float(1 + at % 7)) << at;
+    EXPECT_EQ(grid->at({1000, 1000, 3150}), 0);
+}
+
+TEST(NanovdbGrid, SizesThatLeadBackOrBeyondAreRefused) {
+    using nanovdb::io::Codec;
+    constexpr size_t kHeader = sizeof(nanovdb::io::Header);
+    const auto put = [](std::string& bytes, size_t at, auto value) {
+        std::memcpy(bytes.data() + at, &value, sizeof(value));
+    };
+    // The parts of a file that come again, for ever
+    std::string circle = file_of(cube(0, 8, 1));
+    const size_t part = kHeader + sizeof(nanovdb::io::MetaData) + sizeof("density");
+    put(circle, kHeader + offsetof(nanovdb::io::MetaData, fileSize), -int64_t(part));
+    EXPECT_FALSE(read(circle));
+    // A second grid behind the first one's end
+    std::string second = file_of(cube(0, 8, 1));
+    put(second, part + offsetof(nanovdb::GridData, mGridIndex), uint32_t(1));
+    EXPECT_FALSE(read(second));
+    // A name without an end, and none
+    std::string name = file_of(cube(0, 8, 1));
+    name[part - 1] = 'x';
+    EXPECT_FALSE(read(name));
+    put(name, kHeader + offsetof(nanovdb::io::MetaData, nameSize), uint32_t(0));
+    EXPECT_FALSE(read(name));
+    // Compressed values that claim to be a gigabyte
+    std::string blosc = ball_file(Codec::BLOSC);
+    const size_t values =
+        kHeader + 2 * sizeof(nanovdb::io::MetaData) + sizeof("density") + sizeof("temperature");
+    put(blosc, values + 8 + 12, uint32_t(1) << 30);
+    EXPECT_FALSE(read(blosc));
+}
+
+TEST(NanovdbGrid, ManyWaysToOneNodeAreRefused) {
+    auto handle = cube(0, 8, 1);
+    auto& tree = handle.grid<float>()->tree();
+    auto* upper = tree.getFirstNode<2>()->data();
+    auto* lower = tree.getFirstNode<1>()->data();
+    for (uint32_t i = 0; i < 4096; ++i) {
+        lower->mChildMask.setOn(i);
+        lower->setChild(i, tree.getFirstNode<0>());
+        upper->mChildMask.setOn(i);
+        upper->setChild(i, tree.getFirstNode<1>());
+    }
+    EXPECT_FALSE(read(file_of(std::move(handle))));
+}
+
+TEST(NanovdbGrid, CellsOutOfRangeAreRefused) {
+    EXPECT_TRUE(read(file_of(cube(0, 8, 1e-30))));
+    EXPECT_FALSE(read(file_of(cube(0, 8, 1e-60))));
+}
+
 TEST(NanovdbGrid, DamagedFilesAreRefusedOrReadWithoutHarm) {
     const std::string good = ball_file();
-    const auto read = [](const std::string& bytes) {
-        try {
-            const auto grid = read_nanovdb(bytes, "density", Transform(), {});
-            if (grid) grid->column({-20, 2, 3}, {1, 0, 0}, kInfinity);
-            return grid != nullptr;
-        } catch (const Error& e) {
-            EXPECT_TRUE(e.kind() == ErrorKind::scene || e.kind() == ErrorKind::limit);
-            return false;
-        }
-    };
     EXPECT_TRUE(read(good));
     EXPECT_FALSE(read(""));
     EXPECT_FALSE(read("Film"));
