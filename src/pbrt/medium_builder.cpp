@@ -82,14 +82,16 @@ Bounds3 box_of(Entity& e) {
     const Vec3 side = box.diagonal();
     if (!(side.x > 0 && side.y > 0 && side.z > 0))
         e.refuse("p1", "the box from \"p0\" to \"p1\" is flat");
+    if (!(std::isfinite(side.x) && std::isfinite(side.y) && std::isfinite(side.z)))
+        e.refuse("p1", "the box from \"p0\" to \"p1\" is too large");
     return box;
 }
 
 /// A grid of values over a box, one in the middle of each of its cells. Beyond the outermost ones
 /// they fall to 0, and outside of the box there is nothing, as in pbrt.
 std::shared_ptr<const DensityGrid> cell_grid(std::span<const float> values, const LatticePlace& n,
-                                             const Bounds3& box,
-                                             const Transform& medium_from_world) {
+                                             const Bounds3& box, const Transform& medium_from_world,
+                                             const SourceLocation& where) {
     const Vec3 count{float(n[0]), float(n[1]), float(n[2])}, side = box.diagonal();
     const Transform lattice_from_medium =
         Transform::translate({-0.5f, -0.5f, -0.5f}) *
@@ -102,7 +104,7 @@ std::shared_ptr<const DensityGrid> cell_grid(std::span<const float> values, cons
     return std::make_shared<const DensityGrid>(
         lattice_from_medium * medium_from_world,
         Bounds3{{-0.5f, -0.5f, -0.5f}, count - Vec3{0.5f, 0.5f, 0.5f}},
-        Lattice{{}, {n[0] - 1, n[1] - 1, n[2] - 1}, value});
+        Lattice{{}, {n[0] - 1, n[1] - 1, n[2] - 1}, value}, where);
 }
 
 /// The numbers of a parameter of a grid, `stride` for each cell; empty where it is not given.
@@ -128,7 +130,7 @@ std::shared_ptr<const DensityGrid> uniform_grid(Entity& e, const CurrentTransfor
     const LatticePlace n = cells(e);
     const std::span<const float> values = cell_values(e, name, ParameterType::floats, n);
     if (values.empty()) return nullptr;
-    return cell_grid(values, n, box_of(e), space.get(e.where).inverse());
+    return cell_grid(values, n, box_of(e), space.get(e.where).inverse(), e.where);
 }
 
 /// The offset that is subtracted from temperatures, which older files call a cutoff.
@@ -138,9 +140,8 @@ float temperature_offset(ParameterList& p) {
 
 /// Emission of a black body by its temperature in kelvin, (value - offset) * scale, none up to 100
 /// as in pbrt.
-std::shared_ptr<const Glow> thermal_glow(std::shared_ptr<const DensityGrid> temperature,
-                                         float offset, float scale, float factor, Entity& e,
-                                         BuildContext& context) {
+Glow thermal_glow(std::shared_ptr<const DensityGrid> temperature, float offset, float scale,
+                  float factor, Entity& e, BuildContext& context) {
     constexpr int kTemperatures = 1024;
     constexpr float kDark = 100;
     Glow glow{std::move(temperature), std::vector<Rgb>(kTemperatures)};
@@ -151,7 +152,7 @@ std::shared_ptr<const Glow> thermal_glow(std::shared_ptr<const DensityGrid> temp
             glow.radiance[size_t(i)] =
                 scaled_light(blackbody_radiance(double(kelvin)), factor, e.where, context);
     }
-    return std::make_shared<const Glow>(std::move(glow));
+    return glow;
 }
 
 void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
@@ -167,23 +168,28 @@ void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform
     if (temperature && p.has("Le"))
         e.refuse("Le", "medium " + in_quotes(medium.name) +
                            " has both \"Le\" and \"temperature\"; expected one of them");
+    if (!temperature && !p.has("Le")) return;
+    // One number, or one for each cell
+    const Parameter* scales = p.find("Lescale", {ParameterType::floats});
+    const bool is_even = !scales || scales->numbers.size() == 1;
+    const float factor = is_even ? not_negative(e, "Lescale") : 1;
+    auto scale = is_even ? nullptr : uniform_grid(e, space, "Lescale");
+    const auto brightest = [&](Rgb light) {
+        return scaled_light(light, scale->largest(), p.where("Lescale", e.where), context);
+    };
     if (temperature) {
-        medium.glow = thermal_glow(std::move(temperature), temperature_offset(p),
-                                   p.number("temperaturescale", 1), 1, e, context);
-    } else if (p.has("Le")) {
-        const Parameter* scales = p.find("Lescale", {ParameterType::floats});
-        const bool is_even = !scales || scales->numbers.size() == 1;
-        const float factor = is_even ? not_negative(e, "Lescale") : 1;
+        Glow glow = thermal_glow(std::move(temperature), temperature_offset(p),
+                                 p.number("temperaturescale", 1), factor, e, context);
+        if (scale) std::ranges::for_each(glow.radiance, brightest);
+        glow.factor = std::move(scale);
+        medium.glow = std::make_shared<const Glow>(std::move(glow));
+    } else {
         const Rgb light =
             scaled_light(light_colour(p, "Le", context), factor, p.where("Le", e.where), context);
-        if (!is_even) {
-            auto scale = uniform_grid(e, space, "Lescale");
-            const Rgb brightest =
-                scaled_light(light, scale->largest(), p.where("Lescale", e.where), context);
-            medium.glow = std::make_shared<const Glow>(Glow{std::move(scale), {Rgb{}, brightest}});
-        } else {
+        if (scale)
+            medium.glow = std::make_shared<const Glow>(Glow{scale, {Rgb{}, brightest(light)}});
+        else
             medium.emission = light;
-        }
     }
 }
 
@@ -217,7 +223,7 @@ void rgb_medium(MediumDescription& medium, Entity& e, const CurrentTransform& sp
     for (float v : extinction) mean += double(v) / double(count);
     if (mean > 0)
         for (float& v : extinction) v /= float(mean);
-    medium.density = cell_grid(extinction, n, box_of(e), space.get(e.where).inverse());
+    medium.density = cell_grid(extinction, n, box_of(e), space.get(e.where).inverse(), e.where);
     context.log.add(e.where, "medium " + in_quotes(medium.name) +
                                  ": grids of type \"rgbgrid\" have one colour, the mean of their "
                                  "cells'; how dense they are varies" +
@@ -230,8 +236,8 @@ void cloud_medium(MediumDescription& medium, Entity& e, const CurrentTransform& 
     coefficients(medium, e, context);
     Cloud cloud{box_of(e), not_negative(e, "density"), e.parameters.number("wispiness", 1),
                 e.positive("frequency", 5)};
-    medium.density =
-        std::make_shared<const DensityGrid>(cloud_grid(cloud, space.get(e.where).inverse()));
+    medium.density = std::make_shared<const DensityGrid>(
+        cloud_grid(cloud, space.get(e.where).inverse(), e.where));
 }
 
 void nanovdb_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
@@ -254,8 +260,9 @@ void nanovdb_medium(MediumDescription& medium, Entity& e, const CurrentTransform
     const float factor = p.number("LeScale", not_negative(e, "Lescale"));
     if (auto temperature = read_nanovdb(bytes, "temperature", medium_from_world, in_file);
         temperature && factor > 0)
-        medium.glow = thermal_glow(std::move(temperature), temperature_offset(p),
-                                   p.number("temperaturescale", 1), factor, e, context);
+        medium.glow = std::make_shared<const Glow>(
+            thermal_glow(std::move(temperature), temperature_offset(p),
+                         p.number("temperaturescale", 1), factor, e, context));
 }
 
 }  // namespace
