@@ -50,7 +50,8 @@ DensityGrid cloud_grid(const Cloud& cloud, const Transform& cloud_from_world,
         return cloud.bounds.lo + Vec3{side.x * x / float(n[0] - 1), side.y * y / float(n[1] - 1),
                                       side.z * z / float(n[2] - 1)};
     };
-    std::vector<float> values(size_t(n[0]) * size_t(n[1]) * size_t(n[2]));
+    const size_t count = size_t(n[0]) * size_t(n[1]) * size_t(n[2]);
+    std::vector<float> values(count);
     parallel_for_rows(n[1], n[2], [&](int z) {
         float* value = values.data() + size_t(n[0]) * size_t(n[1]) * size_t(z);
         for (int y = 0; y < n[1]; ++y)
