@@ -28,7 +28,7 @@ class Warnings(CliTest):
             ('Shape "cylinder"', "cylinder"),
             ('LightSource "goniometric" "spectrum I" "stdillum-D65"', "goniometric"),
             ('Texture "t" "spectrum" "ptex"\nMaterial "diffuse" "texture reflectance" "t"' + sphere, "ptex"),
-            ('MakeNamedMedium "m" "string type" "cloud"', "cloud"),
+            ('MakeNamedMedium "m" "string type" "rgbgrid" "rgb sigma_a" [ 1 2 3 ]', "one colour"),
             ('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [1 1 1]\nAttributeEnd', "no shape"),
             ('Shape "sphere" "float raduis" 2', "raduis"),
             ("AttributeEnd", "AttributeEnd"),
