@@ -103,12 +103,18 @@ std::map<std::string, size_t> LitScene::memory() const {
         else if (const auto* patches = std::get_if<std::shared_ptr<const BilinearMesh>>(&g))
             meshes[patches->get()] = mesh_bytes(**patches, (*patches)->patches);
     }
-    size_t sum = 0;
+    size_t sum = 0, grids = 0;
     for (const auto& [mesh, size] : meshes) sum += size;
+    for (const MediumDescription& m : description.media) {
+        if (m.density) grids += m.density->bytes();
+        if (m.glow) grids += m.glow->field->bytes();
+        if (m.glow && m.glow->factor) grids += m.glow->factor->bytes();
+    }
     return {{"meshes", sum},
             {"shapes", geometry.memory()},
             {"embree", geometry.embree_memory()},
-            {"textures", textures.memory()}};
+            {"textures", textures.memory()},
+            {"media", grids}};
 }
 
 }  // namespace covtrace

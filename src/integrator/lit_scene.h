@@ -27,7 +27,7 @@ struct LitScene {
     /// Throws Error(interrupted) where `is_interrupted` says so.
     void throw_if_interrupted() const;
 
-    /// Bytes held, by use: "meshes", "shapes", "embree" (at its peak), "textures".
+    /// Bytes held, by use: "meshes", "shapes", "embree" (at its peak), "textures", "media".
     std::map<std::string, size_t> memory() const;
 
     SceneDescription description;

@@ -116,8 +116,8 @@ TEST(MediaGrid, AttenuatesByTheIntegralOfItsDensity) {
 }
 
 TEST(MediaGrid, FollowsItsTransform) {
-    // The cube turned about the view and made twice as large: the same light in the mean of a
-    // picture of four times its area is not, so that the picture is of the middle alone
+    // The cube is turned about the view and made twice as large, so that the picture shows its
+    // middle
     const std::string medium = "\"uniformgrid\"" + kCells + grid_of("density") +
                                R"( "rgb sigma_a" [ 1 1 1 ] "rgb sigma_s" [ 0 0 0 ])";
     std::string turned = scene(0, medium, kSky);

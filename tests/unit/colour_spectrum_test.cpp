@@ -68,6 +68,23 @@ TEST(SceneSpectrum, BlackbodiesHaveTheirKnownChromaticity) {
         EXPECT_TRUE(is_finite(emission_colour(blackbody_spectrum(kelvin)))) << kelvin;
 }
 
+TEST(SceneSpectrum, BlackbodiesAreAsBrightAsTheyAreSeen) {
+    // Planck's law over its largest value, seen by the y of Wyman, Sloan and Shirley's fit, over
+    // what they see of light that is 1 everywhere: sums over each nanometre from 380 to 780
+    struct Case {
+        double kelvin, luminance;
+    };
+    for (const Case& c : {Case{1500, 0.0034218}, Case{2000, 0.0485763}, Case{3000, 0.416333},
+                          Case{5772, 0.962634}, Case{10000, 0.443413}}) {
+        const Rgb got = blackbody_radiance(c.kelvin);
+        EXPECT_NEAR(luminance(got), c.luminance, 0.01 * c.luminance) << c.kelvin;
+        const Rgb of_one = emission_colour(blackbody_spectrum(c.kelvin));
+        expect_near(got * (1 / luminance(got)), of_one * (1 / luminance(of_one)), 1e-4f);
+    }
+    for (double kelvin : {1.0, 100.0, 1e6, 1e9})
+        EXPECT_TRUE(is_finite(blackbody_radiance(kelvin))) << kelvin;
+}
+
 TEST(SceneSpectrum, DaylightIsWhite) {
     expect_near(*illuminant_colour("stdillum-D65"), Rgb{1}, 1e-3f);
     EXPECT_FALSE(illuminant_colour("stdillum-D66").has_value());
