@@ -1,6 +1,7 @@
 #include "light/environment.h"
 
 #include <cmath>
+#include <vector>
 
 #include "core/warp.h"
 #include "light/delta.h"
@@ -15,6 +16,18 @@ constexpr int kLeastCells = 256, kMostCells = 1024;
 /// Directions per axis and cell: with one, a cell that the edge of a sun crosses would now and then
 /// be taken for dark, and its light found too seldom.
 constexpr int kLeastTaps = 3;
+
+/// A map of a gradient. Between its rows it is interpolated, so that few of them do.
+EnvironmentMap map_of(const HeightGradient& gradient) {
+    constexpr int kRows = 64;
+    std::vector<Rgb> texels;
+    for (int y = 0; y < kRows; ++y) {
+        const float sine = std::cos((float(y) + 0.5f) * kPi / kRows);
+        const float end = sine > 0 ? gradient.up : gradient.down;
+        texels.insert(texels.end(), 2 * kRows, Rgb(std::lerp(gradient.level, end, std::abs(sine))));
+    }
+    return {texels, 2 * kRows, kRows};
+}
 
 /// Whether the linear part of t is a rotation or reflection, to single precision.
 bool preserves_lengths(const Transform& t) {
@@ -34,7 +47,10 @@ Environment::Environment(const InfiniteLight& light, const Transform& light_to_w
       is_rigid_(preserves_lengths(light_to_world)),
       scale_(light.radiance) {
     determinant_ = std::abs(dot(cross(to_light_.x, to_light_.y), to_light_.z));
-    if (light.image) map_ = EnvironmentMap::read(*light.image, where, warnings);
+    if (light.image)
+        map_ = EnvironmentMap::read(*light.image, where, warnings);
+    else if (light.gradient)
+        map_ = map_of(*light.gradient);
     if (light.illuminance) {
         const Rgb measured = scale_ * (map_ ? map_->irradiance_from_above() : Rgb(kPi));
         scale_ *= normalisation(*light.illuminance, luminance(measured));

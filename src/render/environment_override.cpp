@@ -14,23 +14,6 @@ InfiniteLight* infinite(LightDescription& light) {
     return std::get_if<InfiniteLight>(&light.value);
 }
 
-/// From light space, whose pole is z and in which a lat-long picture's middle is -x and its right
-/// half begins at -y, to the world.
-Transform upright(const SceneDescription& scene) {
-    const Vec3 up = up_axis(scene);
-    const Vec3 front = up.x != 0 ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
-    // The camera's x, y, z are right, up, forward: a left-handed frame, unless it is mirrored.
-    const bool is_right_handed = scene.camera.camera_to_world.start().swaps_handedness();
-    const Vec3 right = is_right_handed ? cross(front, up) : cross(up, front);
-    Matrix4 m;
-    for (int row = 0; row < 3; ++row) {
-        m.m[size_t(row)][0] = double(-front[row]);
-        m.m[size_t(row)][1] = double(-right[row]);
-        m.m[size_t(row)][2] = double(up[row]);
-    }
-    return {m, transpose(m)};
-}
-
 /// Throws where there is no infinite light that `option` could change.
 void require_infinite(SceneDescription& scene, const char* option) {
     if (std::none_of(scene.lights.begin(), scene.lights.end(),
@@ -57,7 +40,7 @@ std::string text(const SceneOverrides& overrides) {
 }  // namespace
 
 void replace_environment(const EnvironmentOverride& environment, SceneDescription& scene) {
-    Transform light_to_world = upright(scene);
+    Transform light_to_world = upright_light(scene);
     for (LightDescription& light : scene.lights)
         if (const InfiniteLight* own = infinite(light); own && own->image) {
             light_to_world = light.light_to_world;

@@ -2,28 +2,34 @@
 
 #include "scene/framing.h"
 #include "scene/imaging_scale.h"
+#include "scene/up_axis.h"
 #include "scene/view_text.h"
 
 namespace covtrace {
 
 namespace {
 
+/// Light of the sky on a surface that faces the key light, as a share of all that it gets there.
+constexpr float kSky = 0.4f;
+/// The sky is dark below and brightest at the horizon, so that metal shows its shape and stands out
+/// from what is behind it. A floor gets as much light as from an even sky of 1, a wall nearly.
+constexpr HeightGradient kGradient{0.25f, 1.3f, 0.85f};
+/// Degrees across the key light: mirrors show it, and the borders of shadows are soft.
+constexpr float kKeyAngle = 10;
+
 void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
-    constexpr float kSky = 0.4f;  // of the light that a surface gets which faces the key
     const float scale = imaging_scale(scene);
     const float white = scale > 0 ? 1 / scale : 1;
-    LightDescription sky, key;
-    sky.where = key.where = where;
-    InfiniteLight uniform;
-    uniform.radiance = Rgb(kSky * white);
-    sky.value = uniform;
-    DistantLight distant;
-    distant.radiance = Rgb((1 - kSky) * kPi * white);
+    InfiniteLight sky;
+    sky.radiance = Rgb(kSky * white);
+    sky.gradient = kGradient;
+    scene.lights.push_back({sky, upright_light(scene), where});
+    DistantLight key;
+    key.radiance = Rgb((1 - kSky) * kPi * white);
     const Transform& camera_to_world = scene.camera.camera_to_world.start();
-    distant.direction = normalize(camera_to_world.vector(normalize(Vec3{-0.5f, 0.7f, -0.6f})));
-    key.value = distant;
-    scene.lights.push_back(sky);
-    scene.lights.push_back(key);
+    key.direction = normalize(camera_to_world.vector(normalize(Vec3{-0.5f, 0.7f, -0.6f})));
+    key.angle = kKeyAngle;
+    scene.lights.push_back({key, {}, where});
 }
 
 }  // namespace

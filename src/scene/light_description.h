@@ -49,8 +49,13 @@ struct DistantLight {
     float angle = 0;          ///< degrees across the disc that it shines from, in [0, 180]
     RayKinds visible_to = kEveryRay;  ///< rays that find a light with extent; always `any`
 };
+/// A light that changes with the height alone: its radiance straight down, level and straight up in
+/// light space, in between linear in the sine of the elevation.
+struct HeightGradient {
+    float down = 1, level = 1, up = 1;
+};
 struct InfiniteLight {
-    Rgb radiance{1};  ///< of the uniform light; multiplies the image
+    Rgb radiance{1};  ///< of the uniform light; multiplies the image or the gradient
     std::optional<std::filesystem::path>
         image;  ///< equal-area octahedral square, or lat-long 2:1 with z as the pole
     /// Illuminance on a surface that faces +z of light space, which scales the whole light, colour
@@ -59,6 +64,7 @@ struct InfiniteLight {
     /// Corners, in world space, of a rectangle that all of the light comes through, in the
     /// direction (p3 - p0) x (p1 - p0) seen from what it lights; opposite ones are 0 and 2.
     std::optional<std::array<Vec3, 4>> portal = {};
+    std::optional<HeightGradient> gradient = {};  ///< where there is no image
     RayKinds visible_to = kEveryRay;  ///< rays that find the light; always `any`
 };
 struct LightDescription {

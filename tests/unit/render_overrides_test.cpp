@@ -117,5 +117,16 @@ TEST(Defaults, CountEveryEmitter) {
     EXPECT_EQ(scene.warnings.size(), 2u);
 }
 
+TEST(Defaults, SkiesAreUprightAndLightAFloorLikeAnEvenOne) {
+    SceneDescription scene = read_world("Shape \"sphere\"");
+    scene.up = Vec3{0, 0, 1};
+    apply({}, scene);
+    const LightDescription& light = scene.lights.at(0);
+    const HeightGradient sky = std::get<InfiniteLight>(light.value).gradient.value();
+    EXPECT_NEAR(sky.level / 3 + 2 * sky.up / 3, 1, 1e-3) << "the integral over the cosine";
+    EXPECT_LT(sky.down, 0.5f * sky.level) << "metal shows nothing of an even sky";
+    EXPECT_NEAR(length(light.light_to_world.vector({0, 0, 1}) - *scene.up), 0, 1e-6);
+}
+
 }  // namespace
 }  // namespace covtrace::test
