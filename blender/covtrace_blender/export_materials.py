@@ -248,10 +248,9 @@ class MaterialExporter(SumExporter):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)
 
     def _tell_thin_film(self, node):
-        """Warns of a film on a node Glass or Metallic."""
-        film = node.inputs.get("Thin Film Thickness")
-        if film and (film.is_linked or film.default_value != 0):
-            self.warn(f"material '{self.name}': {film.name} of '{node.name}' is not supported and left out")
+        """Warns of a film on glass."""
+        if self._film(node.inputs):
+            self.warn(f"material '{self.name}': Thin Film Thickness of '{node.name}' is not supported on glass and left out")
 
     def _glossy(self, node):
         return self._metal(self._value(node.inputs["Color"]), self._rough(node), None, self._scattering(node) + self._normal_map(node),
@@ -262,8 +261,7 @@ class MaterialExporter(SumExporter):
         return self._stretch(node, "Anisotropy", "Rotation", stretch_of_glossy)
 
     def _metallic(self, node):
-        self._tell_thin_film(node)
-        get, rest = node.inputs, self._scattering(node) + self._normal_map(node)
+        get, rest = node.inputs, self._film(node.inputs) + self._scattering(node) + self._normal_map(node)
         stretch = self._stretch(node, "Anisotropy", "Rotation", stretch_of_layers)
         if node.fresnel_type == "F82":
             return self._metal(self._value(get["Base Color"]), self._rough(node), self._value(get["Edge Tint"]), rest, stretch)

@@ -31,7 +31,7 @@ def is_white(value):
 
 # Features of Principled that are left out: names of the socket, and the value at which it changes
 # nothing.
-LEFT_OUT = ((("Sheen",), 0), (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0),
+LEFT_OUT = ((("Sheen",), 0), (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0),
             (("Thin Wall",), 0), (("Transmission Dispersion Scale",), 0))
 
 
@@ -93,10 +93,11 @@ class PrincipledExporter(SubsurfaceExporter):
     def _border(self, node, roughness, stretch):
         """Parameters of the specular border over what is diffuse."""
         reflectance, tint = self._reflectance(node.inputs), self._specular_tint(node.inputs)
+        film = self._film(node.inputs)
         if is_white(tint):
-            shape = self._scattering(node)
+            shape = film or self._scattering(node)
         else:
-            shape = [self._colour("normalreflectance", tint, lambda t: t * reflectance, ("normal", reflectance))]
+            shape = [self._colour("normalreflectance", tint, lambda t: t * reflectance, ("normal", reflectance)), *film]
         return [*self._roughness(roughness, stretch), f'"float eta" {max(eta_of_reflectance(reflectance), 1.0001):.9g}', *shape]
 
     def _under_specular(self, node, base, roughness, layers, stretch):
@@ -162,6 +163,7 @@ class PrincipledExporter(SubsurfaceExporter):
         def glass():
             if not is_white(self._specular_tint(get)):
                 self.warn(f"material '{self.name}': Principled's Specular Tint is not supported on glass and left out")
+            self._tell_thin_film(node)
             # Since Blender 4.0 the colour is that of two crossings.
             root = (lambda colour: np.sqrt(np.maximum(colour, 0)), "root") if "Transmission Weight" in get else ()
             return self._clear(base, roughness, self._plain(get["IOR"]), self._scattering(node) + rest, *root,
@@ -177,5 +179,7 @@ class PrincipledExporter(SubsurfaceExporter):
                     coated = self._mix(coated, glass(), transmission)
                 parts.append(coated)
         if not is_constant(metallic, 0):
-            parts.append(self._metal(base, roughness, self._specular_tint(get), self._scattering(node) + rest, stretch))
+            # Before Blender 5.0 the film is on what is no metal alone.
+            film = self._film(get) if bpy.app.version >= (5, 0, 0) else []
+            parts.append(self._metal(base, roughness, self._specular_tint(get), film + self._scattering(node) + rest, stretch))
         return parts[0] if len(parts) == 1 else self._mix(parts[0], parts[1], metallic)

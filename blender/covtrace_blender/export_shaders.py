@@ -73,6 +73,14 @@ class ShaderWriter(SocketReader):
             return f'"texture {parameter}" "{self._texture("float", value, treat, key)}"'
         return f'"float {parameter}" {float(treat(np.array(value.constant))):.9g}'
 
+    def _film(self, inputs):
+        """Parameters of a film in which light interferes, which Principled has since Blender 4.2; none where there is no film."""
+        thickness = inputs.get("Thin Film Thickness")
+        if thickness is None or not (thickness.is_linked or thickness.default_value > 0):
+            return []
+        return [self._number("filmthickness", self._value(thickness, True)),
+                f'"float filmeta" {max(self._plain(inputs["Thin Film IOR"]), 1):.9g}']
+
     def _make(self, kind, parameters):
         name = f"material {self.count}"
         self.count += 1

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "bsdf/schlick_metal.h"
+#include "bsdf/thin_film.h"
 #include "core/vec.h"
 
 namespace covtrace {
@@ -88,6 +89,7 @@ struct ConductorBsdf {
     Rgb regained = {};    ///< share of the light lost by a first reflection that comes back later
     /// Reflectance in place of that of `eta` and `k`, which count only where there is none.
     std::optional<SchlickMetal<Rgb>> schlick = {};
+    ThinFilm film = {};  ///< over it
 };
 struct Dispersion;  // scene/dispersion.h
 struct DielectricBsdf {
@@ -110,6 +112,7 @@ struct CoatTint {
     float weight = 1;        ///< w, in [0, 1]
     /// Table of a border that reflects everything; none: F itself is reflected.
     const CoatTable* white = nullptr;
+    ThinFilm film = {};  ///< over the coat; what it reflects has the weight w, too
 };
 /// Lambertian base below a dielectric coat; two-sided. Made by make_coated_diffuse (coat_table.h).
 struct CoatedDiffuseBsdf {

@@ -2,6 +2,7 @@
 
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
+#include "bsdf/hemisphere_mean.h"
 
 namespace covtrace {
 namespace {
@@ -198,6 +199,19 @@ CoatedDiffuseBsdf coat_alone(const CoatTable& table, float alpha_x, float alpha_
     return b;
 }
 
+/// Cosine-weighted mean of what a total coat reflects, of a tinted one in the channel that reflects
+/// most.
+float mean_reflection(const CoatTable& table, const CoatedDiffuseBsdf& b) {
+    const CoatTint& tint = b.tint;
+    const float coat = table.mean_reflection(b.table_row);
+    if (!tint.white) return coat;
+    const float white = tint.white->mean_reflection(b.table_row);
+    if (!(tint.film.weight > 0)) return max_component(tinted(tint, b.eta, 1, coat, white));
+    return hemisphere_mean([&](float cosine) {
+        return max_component(tinted(tint, b.eta, table, b.table_row, cosine));
+    });
+}
+
 }  // namespace
 
 CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectancePowers& base,
@@ -216,12 +230,7 @@ CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, flo
     b.is_total = true;
     b.white = white;
     b.tint = tint;
-    const float coat = table.mean_reflection(b.table_row);
-    b.mean_transmission =
-        1 -
-        (tint.white
-             ? max_component(tinted(tint, b.eta, coat, tint.white->mean_reflection(b.table_row)))
-             : coat);
+    b.mean_transmission = 1 - mean_reflection(table, b);
     // Nothing is left for the base where the coat reflects everything.
     b.base = b.mean_transmission > 0 ? reflectance * (kInvPi / b.mean_transmission) : Rgb(0);
     return b;

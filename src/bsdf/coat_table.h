@@ -109,13 +109,34 @@ CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, flo
                                     float alpha_y, const CoatTint& tint = {},
                                     const CoatTable* white = nullptr);
 
-/// Share that a tinted coat reflects of the light from one direction, or from any mean of them.
+/// Cosine to the facets of a rough border by which light is reflected, in the mean: where Schlick's
+/// formula gives the share `fresnel` that it reflects of what a white one does, `white`.
+inline float facet_cosine(float eta, float fresnel, float white) {
+    const float f0 = sqr((eta - 1) / (eta + 1));
+    return 1 - std::pow(clamp01((fresnel / white - f0) / (1 - f0)), 0.2f);
+}
+
+/// Share that a tinted coat reflects of the light that meets its facets with the given cosine.
 /// `fresnel`: that of its border of index `eta` without tint; `white`: that of a white border.
-inline Rgb tinted(const CoatTint& tint, float eta, float fresnel, float white) {
+inline Rgb tinted(const CoatTint& tint, float eta, float cosine, float fresnel, float white) {
     const float f0 = sqr((eta - 1) / (eta + 1));
     // x in place of F; rounding must not take it below 0.
     const float grown = std::max(0.0f, (fresnel - f0 * white) / (1 - f0));
-    return tint.weight * (tint.normal_reflectance * (white - grown) + Rgb(grown));
+    const Rgb bare = tint.normal_reflectance * (white - grown) + Rgb(grown);
+    if (!(tint.film.weight > 0)) return tint.weight * bare;
+    // Light that a rough border loses by single scattering is lost of the film's share, too.
+    const Rgb film = white * film_reflectance(tint.film, cosine, tint.normal_reflectance);
+    return tint.weight * lerp(tint.film.weight, bare, film);
+}
+
+/// The same of a rough coat, for the light along a direction with the cosine `cos_theta` > 0;
+/// `table`: of the border without tint.
+inline Rgb tinted(const CoatTint& tint, float eta, const CoatTable& table, float row,
+                  float cos_theta) {
+    const float fresnel = table.shares(row, cos_theta).reflection,
+                white = tint.white->shares(row, cos_theta).reflection;
+    const float cosine = tint.film.weight > 0 ? facet_cosine(eta, fresnel, white) : cos_theta;
+    return tinted(tint, eta, cosine, fresnel, white);
 }
 
 /// Index of a border that reflects everything, as far as single precision tells: CoatTint::white.

@@ -27,15 +27,14 @@ float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
 /// Reflectance of the coat's border at an angle.
 Rgb border(const CoatedDiffuseBsdf& b, float cosine) {
     const float f = fresnel_dielectric(cosine, b.eta).reflectance;
-    return b.tint.white ? tinted(b.tint, b.eta, f, 1) : Rgb(f);
+    return b.tint.white ? tinted(b.tint, b.eta, cosine, f, 1) : Rgb(f);
 }
 
 /// Share of light along w that a tinted coat reflects, for w.z > 0 as in the rest of these helpers.
 Rgb tinted_share(const CoatedDiffuseBsdf& b, Vec3 w) {
     if (is_smooth(b)) return border(b, w.z);
     const float row = table_row(b, w);
-    return tinted(b.tint, b.eta, b.table->shares(row, w.z).reflection,
-                  b.tint.white->shares(row, w.z).reflection);
+    return tinted(b.tint, b.eta, *b.table, row, w.z);
 }
 
 /// Shares of light along w that the coat reflects and lets through: T of coat_table.h, or all that

@@ -21,10 +21,16 @@ BsdfValue eval_and_pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 Rgb albedo(const ConductorBsdf& b, Vec3 wo);
-/// Reflectance of a metal's facets for light with the cosine `cos_i` >= 0 to their normal.
-inline Rgb reflectance(const ConductorBsdf& b, float cos_i) {
+/// Reflectance of a metal's facets without a film, for light with the cosine `cos_i` >= 0 to their
+/// normal.
+inline Rgb bare_reflectance(const ConductorBsdf& b, float cos_i) {
     return b.schlick ? schlick_reflectance(cos_i, *b.schlick)
                      : fresnel_conductor(cos_i, b.eta, b.k);
+}
+/// The same with what the metal has of a film.
+inline Rgb reflectance(const ConductorBsdf& b, float cos_i) {
+    const Rgb bare = bare_reflectance(b, cos_i);
+    return b.film.weight > 0 ? under_film(b.film, cos_i, bare_reflectance(b, 1), bare) : bare;
 }
 
 /// Value of a dielectric. Refraction carries the factor 1 / eta^2 by which radiance changes (eta:

@@ -10,18 +10,29 @@ namespace covtrace::gltf {
 
 /// Whether an extension is read; docs/guide/gltf.md says what becomes of each.
 constexpr bool is_supported(std::string_view extension) {
-    for (const std::string_view name :
-         {"EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
-          "EXT_texture_webp",           "KHR_draco_mesh_compression",
-          "KHR_lights_punctual",        "KHR_materials_anisotropy",
-          "KHR_materials_clearcoat",    "KHR_materials_diffuse_transmission",
-          "KHR_materials_dispersion",   "KHR_materials_emissive_strength",
-          "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
-          "KHR_materials_sheen",        "KHR_materials_specular",
-          "KHR_materials_transmission", "KHR_materials_unlit",
-          "KHR_materials_variants",     "KHR_materials_volume",
-          "KHR_mesh_quantization",      "KHR_meshopt_compression",
-          "KHR_node_visibility",        "KHR_texture_transform"})
+    for (const std::string_view name : {"EXT_mesh_gpu_instancing",
+                                        "EXT_meshopt_compression",
+                                        "EXT_texture_webp",
+                                        "KHR_draco_mesh_compression",
+                                        "KHR_lights_punctual",
+                                        "KHR_materials_anisotropy",
+                                        "KHR_materials_clearcoat",
+                                        "KHR_materials_diffuse_transmission",
+                                        "KHR_materials_dispersion",
+                                        "KHR_materials_emissive_strength",
+                                        "KHR_materials_ior",
+                                        "KHR_materials_iridescence",
+                                        "KHR_materials_pbrSpecularGlossiness",
+                                        "KHR_materials_sheen",
+                                        "KHR_materials_specular",
+                                        "KHR_materials_transmission",
+                                        "KHR_materials_unlit",
+                                        "KHR_materials_variants",
+                                        "KHR_materials_volume",
+                                        "KHR_mesh_quantization",
+                                        "KHR_meshopt_compression",
+                                        "KHR_node_visibility",
+                                        "KHR_texture_transform"})
         if (extension == name) return true;
     return false;
 }

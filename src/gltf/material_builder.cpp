@@ -49,6 +49,7 @@ Surface MaterialBuilder::build() {
     read_anisotropy();
     read_index();
     read_specular();
+    read_iridescence();
     read_sheen();
     read_clearcoat();
     const float metallic = within(pbr_.metallicFactor, 0, 1, pbr("metallicFactor"));

@@ -111,6 +111,7 @@ class MaterialBuilder {
     CoatedDiffuseMaterial dielectric(Widths widths) const;
     ConductorMaterial metal() const;
 
+    void read_iridescence();
     void read_sheen();
     void read_clearcoat();
     /// The part that is neither metal nor clear; with KHR_materials_diffuse_transmission a mixture
@@ -151,6 +152,7 @@ class MaterialBuilder {
     TextureId normal_map_ = -1, tangent_direction_ = -1;
     float normal_scale_ = 1, tangent_rotation_ = 0;
     Border border_;
+    std::optional<ThinFilmDescription> film_;
     std::optional<SheenLayer> sheen_;
     std::optional<ClearcoatLayer> clearcoat_;
 };

@@ -1,4 +1,5 @@
-/// Layers over a material: KHR_materials_sheen and KHR_materials_clearcoat.
+/// Layers over a material: KHR_materials_iridescence, KHR_materials_sheen and
+/// KHR_materials_clearcoat.
 #include "gltf/material_builder.h"
 
 namespace covtrace::gltf {
@@ -7,6 +8,31 @@ namespace {
 using Channel = ImageTexture::Channel;
 
 }  // namespace
+
+void MaterialBuilder::read_iridescence() {
+    const auto* e = extension(material_.extensions, "KHR_materials_iridescence");
+    if (!e) return;
+    const std::string place = in("KHR_materials_iridescence");
+    const auto factor = share(*e, "iridescenceFactor", 0, place);
+    if (factor == 0) return;
+    ThinFilmDescription film;
+    film.eta = static_cast<float>(number(document_, *e, "iridescenceIor", 1.3, 1, 1e3, place));
+    film.weight = textures_.channel(use(texture_info(document_, *e, "iridescenceTexture", place)),
+                                    Channel::red, factor, place + ".iridescenceTexture");
+    const auto thickness = [&](const char* key, double otherwise) {
+        return textures_.constant(
+            static_cast<float>(number(document_, *e, key, otherwise, 0, kAny, place)));
+    };
+    const TextureId most = thickness("iridescenceThicknessMaximum", 400);
+    const auto texture = use(texture_info(document_, *e, "iridescenceThicknessTexture", place));
+    film.thickness =
+        texture.index < 0
+            ? most
+            : textures_.mixture(thickness("iridescenceThicknessMinimum", 100), most,
+                                textures_.channel(texture, Channel::green, 1,
+                                                  place + ".iridescenceThicknessTexture"));
+    film_ = film;
+}
 
 void MaterialBuilder::read_sheen() {
     const auto* e = extension(material_.extensions, "KHR_materials_sheen");

@@ -37,6 +37,7 @@ CoatedDiffuseMaterial MaterialBuilder::dielectric(Widths widths) const {
     m.normal_reflectance = border_.normal_reflectance;
     m.coat_weight = border_.weight;
     m.coat_dims_base = border_.dims_base;
+    m.film = film_;
     return m;
 }
 
@@ -46,6 +47,7 @@ ConductorMaterial MaterialBuilder::metal() const {
     m.u_roughness = widths_.u;
     m.v_roughness = widths_.v;
     m.remap_roughness = false;
+    m.film = film_;
     return m;
 }
 
@@ -59,6 +61,10 @@ MaterialId MaterialBuilder::glass() {
         warn(
             "KHR_materials_specular: of a surface that transmits light, textures are left out and "
             "colours become their mean");
+    if (film_)
+        warn(
+            "KHR_materials_iridescence: of a surface that transmits light the colours of the film "
+            "are missing");
     if (!has_volume && !is_rough) return add(ThinDielectricMaterial{border_.mean_eta, base_});
     if (!has_volume)
         warn(

@@ -48,6 +48,7 @@ struct Builder {
     ConductorMaterial conductor(const std::string& prefix, float outside);
     /// Sets a metal's `edge`.
     void metal_edge(ConductorMaterial& m);
+    std::optional<ThinFilmDescription> film();
     DielectricMaterial dielectric();
     CoatedDiffuseMaterial coated_diffuse();
     CoatedConductorMaterial coated_conductor();
@@ -87,13 +88,24 @@ void Builder::metal_edge(ConductorMaterial& m) {
                     "a conductor has an \"edge\" but no \"reflectance\"; expected both");
 }
 
+std::optional<ThinFilmDescription> Builder::film() {
+    // The parameters are ours, not pbrt's: glTF's iridescence.
+    const TextureId thickness = textures.grey_or_none(p, "filmthickness");
+    if (thickness < 0) return {};
+    return ThinFilmDescription{constant_index(p, "filmeta", 1.33f, context),
+                               textures.grey_or_none(p, "filmweight"), thickness};
+}
+
 ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
     ConductorMaterial m;
     roughness(m, prefix);
     // The parameter is ours, not pbrt's: Blender's "Multiscatter GGX".
     m.multiple_scattering = p.flag(prefix + "multiplescattering", false);
     m.reflectance = textures.reflectance_or_none(p, "reflectance");
-    if (prefix.empty()) metal_edge(m);
+    if (prefix.empty()) {
+        metal_edge(m);
+        m.film = film();
+    }
     const auto types = {ParameterType::texture, ParameterType::rgb, ParameterType::spectrum,
                         ParameterType::blackbody};
     const Parameter* eta = p.find(prefix + "eta", types);
@@ -161,7 +173,9 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
     m.reflects_through_coat = p.flag("reflectsthroughcoat", false);
     if (!m.reflects_through_coat) return m;
     m.normal_reflectance = textures.reflectance_or_none(p, "normalreflectance");
-    if (m.normal_reflectance < 0) m.multiple_scattering = p.flag("multiplescattering", false);
+    m.film = film();
+    if (m.normal_reflectance < 0 && !m.film)
+        m.multiple_scattering = p.flag("multiplescattering", false);
     return m;
 }
 

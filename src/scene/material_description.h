@@ -15,6 +15,12 @@ namespace covtrace {
 
 using MaterialId = int;  ///< index into SceneDescription::materials
 
+/// A film over a border that is so thin that light interferes in it.
+struct ThinFilmDescription {
+    float eta = 1.3f;          ///< index relative to the outside
+    TextureId weight = -1;     ///< share of the surface that is covered; none: 1
+    TextureId thickness = -1;  ///< nanometres; none: 400
+};
 struct DiffuseMaterial {
     TextureId reflectance = -1;
 };
@@ -32,6 +38,7 @@ struct ConductorMaterial {
     bool remap_roughness = true;
     /// Whether light that meets several microfacets comes back, too; else it is lost, as in pbrt.
     bool multiple_scattering = false;
+    std::optional<ThinFilmDescription> film = {};
 };
 struct Dispersion;  // dispersion.h
 struct DielectricMaterial {
@@ -55,8 +62,8 @@ struct CoatedDiffuseMaterial {
     /// diffuse under specular, as in glTF. Then `thickness`, `g`, `albedo`, `max_depth` and
     /// `samples` don't count.
     bool reflects_through_coat = false;
-    /// As that of a metal, of the coat; with `reflects_through_coat` only, and with neither of
-    /// `normal_reflectance` and `coat_weight`.
+    /// As that of a metal, of the coat; with `reflects_through_coat` only, and with none of
+    /// `normal_reflectance`, `coat_weight` and `film`.
     bool multiple_scattering = false;
     /// Reflectance of the coat at the normal, in place of that of `eta`, which then only says how
     /// it grows to 1 at grazing angles; with `reflects_through_coat` only.
@@ -66,6 +73,7 @@ struct CoatedDiffuseMaterial {
     /// Whether the base keeps of `reflectance` what is left of 1 beside the largest channel of
     /// `normal_reflectance`, as in glTF's specular-glossiness.
     bool coat_dims_base = false;
+    std::optional<ThinFilmDescription> film = {};  ///< with `reflects_through_coat` only
 };
 /// A body that scatters light below its border. Where `border.reflectance` is given, it is the
 /// share that leaves again of the light that enters a wide and deep one, and `mean_free_path` is

@@ -60,7 +60,7 @@ void MaterialStore::prepare(const CoatedDiffuseMaterial& m, Material& material,
     const SourceLocation& where = material.description.where;
     material.tables.coat = m.multiple_scattering ? &coats_.get_bouncing(refractive_index(m.eta))
                                                  : &coats_.get(refractive_index(m.eta), thickness);
-    if (m.normal_reflectance >= 0 || m.coat_weight >= 0 || m.multiple_scattering)
+    if (m.normal_reflectance >= 0 || m.coat_weight >= 0 || m.film || m.multiple_scattering)
         material.tables.white = &coats_.get(kWhiteIndex, 0);
     warn_of_gap(m.albedo, "coateddiffuse", where, textures, warnings_);
     if (m.thickness >= 0 && !textures.is_constant(m.thickness))

@@ -20,8 +20,8 @@ Bsdf make(const DiffuseMaterial&, const Values& v, const Tables&) {
     return DiffuseBsdf{v.reflectance()};
 }
 
-/// A metal whose light is reflected once.
-ConductorBsdf metal(const ConductorMaterial& m, const Values& v) {
+/// A metal whose light is reflected once, without a film.
+ConductorBsdf bare_metal(const ConductorMaterial& m, const Values& v) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
@@ -37,6 +37,13 @@ ConductorBsdf metal(const ConductorMaterial& m, const Values& v) {
     constexpr float kMost = 0.9999f;
     r = {std::min(r.r, kMost), std::min(r.g, kMost), std::min(r.b, kMost)};
     return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
+}
+
+/// A metal whose light is reflected once.
+ConductorBsdf metal(const ConductorMaterial& m, const Values& v) {
+    ConductorBsdf b = bare_metal(m, v);
+    b.film = v.film(m.film);
+    return b;
 }
 
 Bsdf make(const ConductorMaterial& m, const Values& v, const Tables& tables) {

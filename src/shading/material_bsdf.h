@@ -42,7 +42,14 @@ struct MaterialValues {
     }
     CoatTint tint(const CoatedDiffuseMaterial& m, const CoatTable* white) const {
         return {share(spectrum(m.normal_reflectance, sqr((m.eta - 1) / (m.eta + 1)))),
-                share(number(m.coat_weight, 1)), white};
+                share(number(m.coat_weight, 1)), white, film(m.film)};
+    }
+    ThinFilm film(const std::optional<ThinFilmDescription>& f) const {
+        if (!f) return {};
+        const ThinFilm none;
+        const float thickness = number(f->thickness, none.thickness);
+        return {share(number(f->weight, 1)), f->eta,
+                std::isfinite(thickness) ? std::max(0.0f, thickness) : 0.0f};
     }
     /// GGX widths of a model that has a roughness.
     template <typename M>

@@ -16,18 +16,23 @@ bool all_constant(const TextureStore& textures, TextureIds ids) {
                        [&](TextureId id) { return id < 0 || textures.is_constant(id); });
 }
 
+bool is_constant(const TextureStore& t, const std::optional<ThinFilmDescription>& film) {
+    return !film || all_constant(t, {film->weight, film->thickness});
+}
+
 bool is_constant(const TextureStore& t, const DiffuseMaterial& m) {
     return all_constant(t, {m.reflectance});
 }
 bool is_constant(const TextureStore& t, const ConductorMaterial& m) {
-    return all_constant(t, {m.eta, m.k, m.reflectance, m.edge_tint, m.u_roughness, m.v_roughness});
+    return is_constant(t, m.film) &&
+           all_constant(t, {m.eta, m.k, m.reflectance, m.edge_tint, m.u_roughness, m.v_roughness});
 }
 bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
     return all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
 }
 bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
-    return all_constant(
-        t, {m.reflectance, m.u_roughness, m.v_roughness, m.normal_reflectance, m.coat_weight});
+    return is_constant(t, m.film) && all_constant(t, {m.reflectance, m.u_roughness, m.v_roughness,
+                                                      m.normal_reflectance, m.coat_weight});
 }
 bool is_constant(const TextureStore& t, const SubsurfaceMaterial& m) {
     return is_constant(t, m.border) &&

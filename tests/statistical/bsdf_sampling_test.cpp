@@ -43,6 +43,8 @@ std::vector<Case> all_cases() {
     static const CoatTable border(1.5f, 0), bouncing(1.5f, white);
     ConductorBsdf tinted{Rgb(1), Rgb(0), 0.1f, 0.4f};
     tinted.schlick = metal_of_edge({0.9f, 0.5f, 0}, {0.6f, 1, 0});
+    ConductorBsdf filmed = tinted;
+    filmed.film = {0.8f, 1.4f, 350};
     const Vec3 aside = normalize(Vec3{0.2f, -0.3f, 1});
     const Rgb eta(0.2f, 0.92f, 1.1f), k(3.9f, 2.45f, 2.14f), tan(0.7f, 0.5f, 0.2f);
     struct Model {
@@ -58,12 +60,16 @@ std::vector<Case> all_cases() {
         {"conductor_bouncing", with_multiple_scattering(ConductorBsdf{eta, k, 0.5f, 0.5f}, white),
          0.5f, 1},
         {"conductor_tinted", tinted, 0.4f, 1},
+        {"conductor_filmed", filmed, 0.4f, 1},
         {"dielectric_brushed", DielectricBsdf{1.5f, 0.3f, 0.1f}, 0.3f, 1.5f},
         {"dielectric_thin", DielectricBsdf{1 / 1.33f, 0.2f, 0.2f}, 0.2f, 1 / 1.33f},
         {"coated_brushed", make_coated_diffuse(coat, reflectance_powers(tan), 0.1f, 0.3f, 5), 0.3f,
          1},
         {"coated_tinted", make_coated_total(coat, tan, 0.1f, 0.3f, {{0.6f, 0.2f, 0}, 0.9f, &white}),
          0.3f, 1},
+        {"coated_filmed",
+         make_coated_total(coat, tan, 0.2f, 0.2f, {{0.6f, 0.2f, 0}, 0.9f, &white, filmed.film}),
+         0.2f, 1},
         {"coated_bouncing", make_coated_total(bouncing, tan, 0.6f, 0.6f, {}, &white), 0.6f, 1},
         {"velvet", LayeredBsdf{make_coated_total(coat, tan, 0.3f, 0.3f), sheen, {}}, 0.3f, 1},
         {"clear_smooth", LayeredBsdf{DiffuseBsdf{tan}, {}, {0.8f, 0, aside}}, 0, 1},

@@ -68,7 +68,7 @@ std::vector<Irradiance> all_irradiances() {
         {"uniform_sky", [](LightScene& s) { s.add_light(InfiniteLight{.radiance = Rgb(3), .image = {}, .illuminance = {}}); }, {}, tilted,
          3 * double(kPi)},
         {"gradient_from_above", [](LightScene& s) { s.add_light(InfiniteLight{.radiance = Rgb(3), .gradient = HeightGradient{1, 1.1f, 1.2f}}); }, {}, up,
-         // Of a level a and a top b: integral of 2 pi (a + (b - a) s) s over the sine s. All of the
+         // The sky of a level a and a top b: integral of 2 pi (a + (b - a) s) s over the sine s. All of the
          // sky is so bright that directions are drawn there
          3 * double(kPi) * (1.1 + 2 * 1.2) / 3},
         {"gradient_from_below", [](LightScene& s) { s.add_light(InfiniteLight{.radiance = Rgb(3), .gradient = HeightGradient{1, 1.1f, 1.2f}}); }, {}, Vec3{0, 0, -1},

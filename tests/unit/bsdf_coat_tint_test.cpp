@@ -81,6 +81,29 @@ TEST(CoatTint, SmoothOnesReflectTheirColourAndWhiteAtTheRim) {
     }
 }
 
+TEST(CoatTint, FilmsHaveTheirColoursOverABaseThatGetsTheRest) {
+    CoatTint filmed = tint(Rgb(0.04f));
+    filmed.film = {1, 1.8f, 300};
+    const Bsdf mirroring = make_coated_total(table(), Rgb(0), 0, 0, filmed);
+    for (const float cos_o : {1.0f, 0.5f}) {
+        const auto s = sample(mirroring, at_cos(cos_o), 0, {});
+        ASSERT_TRUE(s);
+        const Rgb found = s->weight * s->pdf,
+                  expected = film_reflectance(filmed.film, cos_o, Rgb(0.04f));
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6f);
+        EXPECT_GT(max_component(expected), 1.2f * expected[cos_o == 1 ? 1 : 2]) << "has a colour";
+    }
+    // A white base keeps what the strongest colour leaves, which is known at the mean angle of the
+    // facets alone
+    for (const float alpha : {0.2f, 0.6f})
+        for (const float cos_o : {0.3f, 0.7f, 1.0f}) {
+            const Bsdf white = make_coated_total(table(), Rgb(1), alpha, alpha, filmed);
+            const Rgb sum = integrated(white, at_cos(cos_o)), told = albedo(white, at_cos(cos_o));
+            EXPECT_NEAR(max_component(sum), 1, 0.04f) << alpha << " " << cos_o;
+            for (int i = 0; i < 3; ++i) EXPECT_NEAR(told[i], sum[i], 0.04f);
+        }
+}
+
 TEST(CoatTint, OfNoWeightLeavesTheBase) {
     const Bsdf b = make_coated_total(table(), {0.7f, 0.5f, 0.2f}, 0.3f, 0.3f, tint(Rgb(1), 0));
     const Vec3 wo = at_cos(0.2f), wi = at_cos(0.6f);

@@ -48,6 +48,17 @@ ConductorBsdf schlick_metal(float alpha_x, float alpha_y) {
     return b;
 }
 
+ConductorBsdf filmed_metal(float alpha_x, float alpha_y) {
+    ConductorBsdf b = schlick_metal(alpha_x, alpha_y);
+    b.film = {0.7f, 1.4f, 350};
+    return b;
+}
+CoatTint filmed() {
+    CoatTint t = tint();
+    t.film = {1, 1.8f, 400};
+    return t;
+}
+
 DielectricBsdf bouncing_glass(float alpha) {
     static const CoatTable outside(1.5f, 0), inside(1 / 1.5f, 0);
     return with_multiple_scattering({1.5f, alpha, alpha, Rgb(0.95f)}, outside, inside);
@@ -117,6 +128,8 @@ std::vector<Case> all_cases() {
         {"tinted_metal", schlick_metal(0.2f, 0.2f)},
         {"tinted_metal_brushed", schlick_metal(0.05f, 0.4f)},
         {"tinted_metal_bouncing", with_multiple_scattering(schlick_metal(0.6f, 0.6f), white())},
+        {"filmed_metal", filmed_metal(0.2f, 0.4f)},
+        {"filmed_metal_bouncing", with_multiple_scattering(filmed_metal(0.6f, 0.6f), white())},
         {"copper_bouncing", bouncing_copper(0.6f, 0.6f)},
         {"copper_bouncing_brushed", bouncing_copper(0.2f, 0.4f)},
         {"frosted_bouncing", bouncing_glass(0.4f)},
@@ -135,6 +148,8 @@ std::vector<Case> all_cases() {
         {"tinted_varnish", make_coated_total(coat(), tan, 0, 0, tint())},
         {"tinted_satin", make_coated_total(coat(), tan, 0.1f, 0.1f, tint())},
         {"tinted_brushed", make_coated_total(coat(), tan, 0.1f, 0.5f, tint())},
+        {"filmed_varnish", make_coated_total(coat(), tan, 0, 0, filmed())},
+        {"filmed_brushed", make_coated_total(coat(), tan, 0.1f, 0.5f, filmed())},
         {"satin_bouncing", bouncing_satin(0.4f, 0.4f)},
         {"satin_bouncing_brushed", bouncing_satin(0.1f, 0.5f)},
         {"lacquer_on_mirror", coated_metal(0, 0, 0, 0)},

@@ -54,6 +54,42 @@ TEST(GltfBorder, SpecularKeepsColoursAndTextures) {
     EXPECT_FALSE(contains(all_warnings(scene), "KHR_materials_specular"));
 }
 
+TEST(GltfBorder, FilmsKeepTheirNumbersAndTextures) {
+    const auto film = [](const json& iridescence) {
+        return coat_of(with_extensions({{"KHR_materials_iridescence", iridescence}})).film;
+    };
+    EXPECT_FALSE(film({{"iridescenceIor", 2}})) << "the factor is 0 unless it is given";
+    const auto scene = with_extensions({{"KHR_materials_iridescence",
+                                         {{"iridescenceFactor", 0.5},
+                                          {"iridescenceIor", 1.8},
+                                          {"iridescenceThicknessMinimum", 50}}}});
+    const auto& plain = coat_of(scene).film.value();
+    EXPECT_EQ(plain.eta, 1.8f);
+    EXPECT_EQ(constant_value(scene, plain.weight).r, 0.5f);
+    EXPECT_EQ(constant_value(scene, plain.thickness).r, 400);
+    EXPECT_FALSE(contains(all_warnings(scene), "iridescence"));
+    const auto textured = with_extensions({{"KHR_materials_iridescence",
+                                            {{"iridescenceFactor", 1},
+                                             {"iridescenceTexture", {{"index", 0}}},
+                                             {"iridescenceThicknessMaximum", 600},
+                                             {"iridescenceThicknessTexture", {{"index", 0}}}}}});
+    const auto& image = coat_of(textured).film.value();
+    EXPECT_EQ(constant_as<ImageTexture>(textured, image.weight).channel,
+              ImageTexture::Channel::red);
+    const auto& mixture = constant_as<MixTexture>(textured, image.thickness);
+    EXPECT_EQ(constant_value(textured, mixture.tex1).r, 100);
+    EXPECT_EQ(constant_value(textured, mixture.tex2).r, 600);
+    EXPECT_EQ(constant_as<ImageTexture>(textured, mixture.amount).channel,
+              ImageTexture::Channel::green);
+}
+
+TEST(GltfBorder, FilmsOfWhatTransmitsLightAreTold) {
+    const auto scene =
+        with_extensions({{"KHR_materials_iridescence", {{"iridescenceFactor", 1}}},
+                         {"KHR_materials_transmission", {{"transmissionFactor", 1}}}});
+    EXPECT_TRUE(contains(all_warnings(scene), "the colours of the film are missing"));
+}
+
 TEST(GltfBorder, WhatTransmitsLightTakesTheMean) {
     const auto eta = [](double ior, const json& specular) {
         const auto scene =
