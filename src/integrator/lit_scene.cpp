@@ -68,7 +68,8 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     for (const Warnings* w : {&textures.warnings(), &lights.warnings()})
         description.warnings.insert(description.warnings.end(), w->begin(), w->end());
     for (const MediumDescription& m : description.media)
-        media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g, m.density.get(), m.glow.get()});
+        media.push_back(
+            {m.sigma_a, m.sigma_s, m.emission, m.g, m.density.get(), m.glow.get(), m.source.get()});
     has_lens_or_motion = camera.has_lens() || anything_moves(description);
     has_interfaces = geometry.has_interfaces();
     shadows_differ = geometry.shadows_differ();
@@ -109,6 +110,7 @@ std::map<std::string, size_t> LitScene::memory() const {
         if (m.density) grids += m.density->bytes();
         if (m.glow) grids += m.glow->field->bytes();
         if (m.glow && m.glow->factor) grids += m.glow->factor->bytes();
+        if (m.source) grids += m.source->bytes();
     }
     return {{"meshes", sum},
             {"shapes", geometry.memory()},

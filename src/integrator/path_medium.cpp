@@ -14,7 +14,7 @@ MediumEvent PathTracer::cross_medium(float length) {
     const uint32_t piece = static_cast<uint32_t>(passed_interfaces_) +
                            static_cast<uint32_t>(depth_) * (kMostInterfaces + 1);
     if (depth_ < max_depth_ && medium.emits()) {
-        const float u = medium.glow ? sampler_.pair(kGlowPairs + piece).x : 0;
+        const float u = medium.glow || medium.source ? sampler_.pair(kGlowPairs + piece).x : 0;
         const Rgb contribution = beta_ * emitted_along(medium, way, length, u);
         result_.radiance += contribution;
         if (record_) glow_ += luminance(contribution);

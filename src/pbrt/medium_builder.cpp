@@ -155,6 +155,26 @@ Glow thermal_glow(std::shared_ptr<const DensityGrid> temperature, float offset, 
     return glow;
 }
 
+/// The radiance that each cell of a grid adds per unit of length, a parameter of our own; null
+/// where it is not given or all dark.
+std::shared_ptr<const EmissionField> emission_field(Entity& e, const CurrentTransform& space) {
+    const LatticePlace n = cells(e);
+    const std::span<const float> values = cell_values(e, "emission", ParameterType::rgb, n);
+    if (std::ranges::all_of(values, [](float v) { return v == 0; })) return nullptr;
+    const Bounds3 box = box_of(e);
+    std::vector<float> whole(values.size() / 3), part(values.size() / 3);
+    const auto grid = [&](const std::vector<float>& cells) {
+        return cell_grid(cells, n, box, space.get(e.where).inverse(), e.where);
+    };
+    EmissionField field;
+    for (size_t c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < part.size(); ++i) whole[i] += part[i] = values[3 * i + c];
+        field.channels[c] = grid(part);
+    }
+    field.whole = grid(whole);
+    return std::make_shared<const EmissionField>(std::move(field));
+}
+
 void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
                     BuildContext& context) {
     ParameterList& p = e.parameters;
@@ -164,6 +184,7 @@ void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform
         throw Error(
             ErrorKind::scene, e.where,
             "medium " + in_quotes(medium.name) + " has no grid; expected \"float density\"");
+    medium.source = emission_field(e, space);
     auto temperature = uniform_grid(e, space, "temperature");
     if (temperature && p.has("Le"))
         e.refuse("Le", "medium " + in_quotes(medium.name) +

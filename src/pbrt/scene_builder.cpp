@@ -368,8 +368,9 @@ void SceneBuilder::note_what_is_missing(const SourceLocation& end) {
     const bool has_emitters =
         std::any_of(scene_.shapes.begin(), scene_.shapes.end(),
                     [](const ShapeDescription& s) { return s.area_light >= 0; }) ||
-        std::any_of(scene_.media.begin(), scene_.media.end(),
-                    [](const MediumDescription& m) { return !is_black(m.emission); });
+        std::any_of(scene_.media.begin(), scene_.media.end(), [](const MediumDescription& m) {
+            return !is_black(m.emission) || m.glow || m.source;
+        });
     const bool is_empty = scene_.shapes.empty() && scene_.instances.empty();
     if (!is_empty && scene_.lights.empty() && !has_emitters)
         scene_.no_lights = {file,

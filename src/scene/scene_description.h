@@ -23,6 +23,7 @@
 #include "scene/ray_kind.h"
 #include "scene/texture_description.h"
 #include "volume/density_grid.h"
+#include "volume/emission_field.h"
 #include "volume/glow.h"
 
 namespace covtrace {
@@ -41,6 +42,8 @@ struct MediumDescription {
     std::shared_ptr<const DensityGrid> density = {};
     /// Emission that varies, in the place of `emission`; its field is in world space. May be null.
     std::shared_ptr<const Glow> glow = {};
+    /// Emission beside these that does not hang on the density, in world space. May be null.
+    std::shared_ptr<const EmissionField> source = {};
 };
 
 // ---- shapes, in object space

@@ -135,6 +135,25 @@ Rgb glow_along(const Medium& medium, const MediumWay& way, float column, float l
     return light * medium.absorption;
 }
 
+Rgb source_along(const Medium& medium, const MediumWay& way, float length, float u) {
+    const EmissionField& source = *medium.source;
+    const float whole = source.whole->column(way.origin(), way.direction(), length);
+    if (!(whole > 0)) return {};
+    constexpr int kPlaces = 4;  // as of a glow
+    std::array<float, kPlaces> columns, distances;
+    for (int i = 0; i < kPlaces; ++i) columns[size_t(i)] = (float(i) + u) / kPlaces * whole;
+    source.whole->distances(way.origin(), way.direction(), length, columns.data(), distances.data(),
+                            kPlaces);
+    Rgb light;
+    for (const float distance : distances) {
+        if (!std::isfinite(distance)) continue;
+        const Rgb emission = source.at(way.point(distance));
+        if (const float all = sum(emission); all > 0)
+            light += emission * (1 / all) * transmittance(medium, way.column(distance));
+    }
+    return light * (whole / kPlaces);
+}
+
 }  // namespace
 
 Rgb Medium::albedo() const {
@@ -180,7 +199,9 @@ Rgb transmittance(const Medium& medium, float column) {
 
 Rgb emitted_along(const Medium& medium, const MediumWay& way, float length, float u) {
     const float column = way.column(length);
-    return medium.glow ? glow_along(medium, way, column, length, u) : even_glow(medium, column);
+    const Rgb light =
+        medium.glow ? glow_along(medium, way, column, length, u) : even_glow(medium, column);
+    return medium.source ? light + source_along(medium, way, length, u) : light;
 }
 
 MediumEvent sample_event(const Medium& medium, const MediumWay& way, float length, Rgb throughput,

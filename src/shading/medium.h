@@ -6,6 +6,7 @@
 
 #include "core/vec.h"
 #include "volume/density_grid.h"
+#include "volume/emission_field.h"
 #include "volume/glow.h"
 
 namespace covtrace {
@@ -16,13 +17,14 @@ struct Medium {
     float g = 0;   ///< mean cosine of Henyey and Greenstein's phase function
     /// Factor of both coefficients, in world space; null: 1 everywhere.
     const DensityGrid* density = nullptr;
-    const Glow* glow = nullptr;  ///< emission that varies, in the place of `emission`
+    const Glow* glow = nullptr;             ///< emission that varies, in the place of `emission`
+    const EmissionField* source = nullptr;  ///< emission beside these, whatever the density
 
     Rgb extinction() const { return absorption + scattering; }
     /// Share of the extinction that scatters; 0 where there is none.
     Rgb albedo() const;
     bool scatters() const { return !is_black(scattering); }
-    bool emits() const { return glow || !is_black(emission); }
+    bool emits() const { return glow || source || !is_black(emission); }
 };
 
 /// The way of a ray through a medium. Its column up to a distance is the integral of the density,
@@ -40,6 +42,8 @@ class MediumWay {
     /// The same for many columns, which rise.
     void distances(std::span<const float> columns, float length, std::span<float> found) const;
     Vec3 point(float distance) const { return origin_ + direction_ * distance; }
+    Vec3 origin() const { return origin_; }
+    Vec3 direction() const { return direction_; }
 
   private:
     const DensityGrid* density_ = nullptr;
@@ -55,7 +59,8 @@ Rgb transmittance(const Medium& medium, float column);
 /// absorption * emission * (1 - transmittance) / extinction, in closed form. Of a glow an estimate
 /// by four places, u in [0, 1): they are even in what reaches the start of light that is everywhere
 /// the same, of all channels that absorb in the mean, one in each quarter. So no channel's weight
-/// is more than their number times as large as that of its own places, whatever the colours.
+/// is more than their number times as large as that of its own places, whatever the colours. Of a
+/// source it is one by as many places that are even in what all channels of it emit.
 Rgb emitted_along(const Medium& medium, const MediumWay& way, float length, float u);
 
 /// The way of a ray through a piece of medium: it scatters in it, or leaves.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "core/rng.h"
 #include "tests/render/fixtures.h"
@@ -183,6 +184,36 @@ TEST(MediaGrid, SingleScatteringOfALampBesideIt) {
             uniform(512, 5))
             .image;
     EXPECT_NEAR(mean_of(image, 1), expected, 5 * error_of(image, 1) + 0.01 * expected);
+}
+
+TEST(MediaGrid, EmitsWhateverItsDensity) {
+    // L = int e exp(-column) ds, e the field, which a medium without density has as well
+    const std::array<double, 3> a{0.3, 1, 0}, e{2, 0.5, 3};
+    std::string cells = " \"rgb emission\" [";
+    std::istringstream values(grid_of("density").substr(grid_of("density").find('[') + 1));
+    for (double v; values >> v;)
+        for (const double c : e) cells += " " + std::to_string(v * c);
+    for (const double dense : {0, 1}) {
+        const std::string medium = "\"uniformgrid\"" + kCells + grid_of("density") + cells +
+                                   " ] \"float scale\" " + std::to_string(dense) +
+                                   R"( "rgb sigma_a" [ 0.3 1 0 ] "rgb sigma_s" [ 0 0 0 ])";
+        const Image image = render_text(scene(5, medium, ""), uniform(512, 3)).image;
+        for (size_t c = 0; c < 3; ++c) {
+            const double expected = mean_over_rays([&](double x, double y) {
+                double light = 0, column = 0;
+                for (int k = 0; k < kSteps; ++k) {
+                    const double z = -1 + 2 * (k + 0.5) / kSteps, rho = density_at(x, y, z);
+                    column += dense * rho / kSteps;
+                    light += rho * e[c] * std::exp(-a[c] * column) * 2 / kSteps;
+                    column += dense * rho / kSteps;
+                }
+                return light;
+            });
+            EXPECT_NEAR(mean_of(image, int(c)), expected,
+                        5 * error_of(image, int(c)) + 2e-3 * expected)
+                << c << " " << dense;
+        }
+    }
 }
 
 TEST(MediaGrid, GlowsAsItsFieldTells) {
