@@ -22,17 +22,17 @@ class Surface:
 
     ranges: {UV map: ((u, v) smallest, (u, v) largest)}, "" being the one that is active for rendering. body_of: makes the
     Body, with its atlas, for what hangs on the place on it; None where there is none. active_uv_map: the name of the one that
-    is active for rendering.
+    is active for rendering. space_of: makes the VolumeSpace of what is within it; None where that is not known.
     """
 
     body = None
 
-    def __init__(self, ranges=None, body_of=None, active_uv_map=None):
-        self.ranges, self.body_of, self.active_uv_map = ranges or {}, body_of, active_uv_map
+    def __init__(self, ranges=None, body_of=None, active_uv_map=None, space_of=None):
+        self.ranges, self.body_of, self.active_uv_map, self.space_of = ranges or {}, body_of, active_uv_map, space_of
 
     def on_body(self):
         """The same, on which all is baked to the body's atlas."""
-        found = Surface(self.ranges)
+        found = Surface(self.ranges, space_of=self.space_of)
         found.body = self.body_of()
         return found
 

@@ -8,11 +8,13 @@ import numpy as np
 from . import hair_pigment
 from .baked_images import BakedImages
 from .baking import Baker, Surface
+from .displacement import method_of
 from .emission import either
 from .export_shaders import squared, stretch_of_glossy, stretch_of_layers
 from .export_sockets import Value
 from .export_textures import TextureFiles
-from .export_volumes import Media, coefficients
+from .export_volumes import medium_of
+from .media import Media, VaryingMedium
 from .node_signature import all_nodes
 from .owner import Owner, asked_of_owner
 from .shader_nodes.flat import flat_output
@@ -154,12 +156,11 @@ class MaterialExporter(SumExporter):
         node, _ = self._linked(output.inputs["Displacement"])
         if node is None:
             return None
+        if method_of(material) == "DISPLACEMENT":
+            return None  # moves vertices and nothing else
         if node.type != "DISPLACEMENT" or node.inputs["Normal"].is_linked:
             self.warn(f"material '{self.name}': Displacement is not supported and left out but for the node Displacement along the normal")
             return None
-        method = getattr(material, "displacement_method", None) or getattr(getattr(material, "cycles", None), "displacement_method", "BUMP")
-        if method != "BUMP":
-            self.warn(f"material '{self.name}': Displacement turns the surface's normals and does not move it")
         scale = self._plain(node.inputs["Scale"])
         if node.space == "OBJECT":
             self.of_scales.add(material.name_full)
@@ -184,22 +185,12 @@ class MaterialExporter(SumExporter):
         def tell(text):
             self.warn(f"material '{self.name}': {text}")
 
-        def colour(socket):
-            value = self._value(socket)
-            if value.image:
-                tell(f"an image at '{socket.name}' of a volume is not supported; the socket's own value is used")
-                return tuple(socket.default_value)[:3]
-            return value.constant
-
-        surface = self.surface
-        self.surface = Surface(surface.ranges)  # an even medium needs no body
         try:
-            found = coefficients(node, colour, self._plain, tell)
+            found = medium_of(node, self.surface.space_of and self.surface.space_of(), self.files.source, self.baker.ray, self.baker.owner, tell)
         except Unsupported as problem:
             tell(f"its volume is not supported and left out ({problem})")
             return ""
-        finally:
-            self.surface = surface
+        self.hangs_on_object |= isinstance(found, VaryingMedium)
         return self.media.add(found)
 
     def _shader(self, node):

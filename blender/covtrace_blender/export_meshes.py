@@ -114,11 +114,12 @@ def loop_uvs(mesh, layer):
     return uvs.reshape(-1, 2)
 
 
-def parts(mesh, uvs_of_slot, piece_of_triangle=None, tangents_of_slot=lambda slot: None):
+def parts(mesh, uvs_of_slot, piece_of_triangle=None, tangents_of_slot=lambda slot: None, kept_normals=None):
     """Yields (material slot, piece, positions, normals or None, uvs or None, triangles, tangents or None).
 
     uvs_of_slot(slot), tangents_of_slot(slot): (n, 3, 2) and (n, 3, 3) of all triangles' corners, or None. piece_of_triangle: pieces that stay apart; None: all is piece 0.
-    Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth shading have no
+    Corners that agree in everything are one vertex, so that smooth surfaces are closed. kept_normals: (which triangles,
+    (n, 3, 3) normals of all corners) of those that have these in the place of their own, or None. Faces without smooth shading have no
     normals: the triangles' own are theirs.
     """
     mesh.calc_loop_triangles()
@@ -127,7 +128,11 @@ def parts(mesh, uvs_of_slot, piece_of_triangle=None, tangents_of_slot=lambda slo
     points = positions(mesh)
     vertices, loops, slots = triangles(mesh), triangle_loops(mesh), triangle_slots(mesh)
     smooth = smooth_triangles(mesh)
-    normals = loop_normals(mesh) if smooth.any() else None
+    normals = loop_normals(mesh)[loops] if smooth.any() else None
+    if kept_normals:
+        has_kept, kept = kept_normals
+        normals = np.where(has_kept[:, None, None], kept, 0 if normals is None else normals)
+        smooth = smooth | has_kept
     piece = np.zeros(len(slots), dtype=int) if piece_of_triangle is None else piece_of_triangle
     for slot, number in np.unique(np.column_stack((slots, piece)), axis=0):
         uvs, tangents = uvs_of_slot(int(slot)), tangents_of_slot(int(slot))
@@ -137,7 +142,7 @@ def parts(mesh, uvs_of_slot, piece_of_triangle=None, tangents_of_slot=lambda slo
                 continue
             columns = [points[vertices[chosen].ravel()]]
             if is_smooth:
-                columns.append(normals[loops[chosen].ravel()])
+                columns.append(normals[chosen].reshape(-1, 3))
             if uvs is not None:
                 columns.append(uvs[chosen].reshape(-1, 2))
             if tangents is not None:

@@ -10,27 +10,30 @@ from mathutils import Vector
 from . import attributes, export_lights, export_meshes, export_motion, export_strands, export_world, islands, ply
 from .atlases import Atlases
 from .baking import Surface
-from .body import Body
+from .body import Body, texture_space
 from .body_demand import MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS, BodyDemand
 from .clipping import Clipping
+from .displacement import Displacer
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
-from .export_shaders import numbers
-from .export_volumes import Volumes, has_volume
+from .export_points import Spheres, spheres
+from .export_volumes import has_volume
+from .media import Volumes
 from .node_signature import hangs_on_world
 from .owner import Owner, asks_for_random, random_of
-from .part import Part
+from .part import Part, write_parts
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
 from .shutter import has_blurred_shape, is_blurred, shutter_times
-from .shader_nodes.light_path import RAYS
 from .texel_density import Placements
 from .uv_ranges import UvRanges
-from .visibility import Visibility, hidden_from
+from .visibility import Visibility
+from .volume_lattice import VolumeSpace
 
 CONTENT = "content.pbrt"
 
 SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
+WRITTEN = (*SURFACES, "CURVES", "POINTCLOUD")
 
 
 class SceneExporter:
@@ -153,7 +156,7 @@ class SceneExporter:
                 filled = [v for v in self._variants(obj, slot, obj.data) if v.medium and set(v.rays) - hidden]
                 if filled:
                     rays = {ray for variant in filled for ray in variant.rays} - hidden
-                    found.add(obj, instance.matrix_world, filled[0].medium, rays)
+                    found.add(obj, instance.matrix_world, self.materials.media.placed(filled[0].medium, instance.matrix_world), rays)
                     break
         return found
 
@@ -168,7 +171,7 @@ class SceneExporter:
             end = None if key in self.still else moving.get(key)
             if obj.type == "LIGHT" and instance.show_self:
                 self._write_lamp(obj, matrix, end, hidden)
-            elif obj.type in SURFACES or obj.type == "CURVES":
+            elif obj.type in WRITTEN:
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
                 self.random = self._random_of(instance)
                 shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles, self.random)
@@ -181,20 +184,22 @@ class SceneExporter:
                 if not parts:
                     continue
                 around = self._media_around(obj, matrix) if any(part.variant.medium for part in parts) else ()
-                if instance.is_instance and not any(part.variant.emission for part in parts):
+                media = self.materials.media
+                stands_alone = any(part.variant.emission or media.varies(part.variant.medium) for part in parts)
+                if instance.is_instance and not stands_alone:
                     shown += (frozenset(hidden), around)
                     if shown not in shared:
                         shared[shown] = f"object {len(shared)}"
                         self.out.write(f'ObjectBegin "{shared[shown]}"\n')
-                        self._write_parts(parts, hidden, around)
+                        write_parts(self.out, media, parts, hidden, around, matrix)
                         self.out.write("ObjectEnd\n")
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
                                    f'ObjectInstance "{shared[shown]}"\nAttributeEnd\n')
                 else:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
-                    self._write_parts(parts, hidden, around)
+                    write_parts(self.out, media, parts, hidden, around, matrix)
                     self.out.write("AttributeEnd\n")
-            elif obj.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
+            elif obj.type in ("VOLUME", "GPENCIL"):
                 self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
         self.visibility.tell(self.warn)
 
@@ -217,12 +222,16 @@ class SceneExporter:
         """The Parts of an evaluated object, its files and materials written."""
         if obj.type == "CURVES":
             return self._strands_parts(obj, 0, export_strands.hair_curves(obj.data))
+        if obj.type == "POINTCLOUD":
+            return [Spheres(centres, radii, variant, self.placements.sole_matrix(obj)) for slot, centres, radii in spheres(obj.data)
+                    for variant in self._variants(obj, slot, None)]
         mesh = obj.to_mesh()
         if mesh is None:
             return []
         if obj.name_full in self.still_shapes and self._is_own(obj):
             export_meshes.reshape(mesh, self.still_shapes[obj.name_full])
         piece, motions = self._motions(obj, mesh)
+        kept = self._displace(obj, mesh)
         parts = []
 
         def uvs_of_slot(slot):
@@ -239,7 +248,7 @@ class SceneExporter:
             wanted = next((variant.tangent for variant in self._variants(obj, slot, mesh) if variant.tangent), None)
             return wanted and wanted.at_corners(mesh)
 
-        for slot, number, positions, normals, uvs, triangles, tangents in export_meshes.parts(mesh, uvs_of_slot, piece, tangents_of_slot):
+        for slot, number, positions, normals, uvs, triangles, tangents in export_meshes.parts(mesh, uvs_of_slot, piece, tangents_of_slot, kept):
             if not np.isfinite(positions).all():
                 self.warn(f"object '{obj.name}' has vertices that are not finite and is left out")
                 break
@@ -257,6 +266,11 @@ class SceneExporter:
             parts += self._parts(self._variants(obj, slot, mesh), positions, normals, uvs, triangles, motion, tangents)
         obj.to_mesh_clear()
         return parts
+
+    def _displace(self, obj, mesh):
+        def owner_of(material):
+            return Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
+        return Displacer(self.materials.files.source, owner_of, self.warn).displace(mesh, self._materials(obj), self.placements.sole_matrix(obj))
 
     def _export_strands(self, obj):
         """The same of its hair."""
@@ -303,7 +317,11 @@ class SceneExporter:
 
         def surface_of(name):
             has_body = mesh and Body.is_of(mesh)
-            return Surface(self.uv_ranges.of(name), body if has_body else None, export_meshes.active_uv_map(mesh) if has_body else None)
+            return Surface(self.uv_ranges.of(name), *((body, export_meshes.active_uv_map(mesh), space) if has_body else ()))
+
+        def space():
+            places = export_meshes.positions(mesh)
+            return VolumeSpace(places.min(0), places.max(0), texture_space(mesh), self.placements.only_matrix(obj), is_preview=self.is_preview)
 
         owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
         return self.materials.variants(material, (*Placements.key(obj), mesh is None, self.random), surface_of, owner)
@@ -347,7 +365,7 @@ class SceneExporter:
         self.placements = Placements(None if self.is_preview else self.camera)
         for _, instance in self._instances():
             obj = instance.object
-            if obj.type in SURFACES or obj.type == "CURVES":
+            if obj.type in WRITTEN:
                 self.placements.add(instance)
             if obj.type == "MESH":
                 self.uv_ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
@@ -378,23 +396,3 @@ class SceneExporter:
         """The names of the media that an object stands in, by the middle of the box around it."""
         middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
         return self.volumes.media_at(matrix @ middle, obj.name_full)
-
-    def _write_parts(self, parts, hidden, around):
-        for part in parts:
-            emission = part.variant.emission
-            self.out.write("AttributeBegin\n" f'NamedMaterial "{part.variant.name}"\n')
-            if part.variant.medium:
-                media = self.materials.media
-                self.out.write(f'MediumInterface "{media.sum((part.variant.medium, *around))}" "{media.sum(around)}"\n')
-            if part.motion is not None:
-                self.out.write(placement("ConcatTransform", *part.motion))
-            if emission:
-                image = f' "string filename" "{emission.texture}"' if emission.texture else ""
-                scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else \
-                    f'"rgb L" [{numbers(emission.radiance)}]'
-                passes = ' "bool letslightpass" true' if part.variant.is_light_alone else ""
-                self.out.write(f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true{passes}\n')
-            unseen = hidden | (set(RAYS) - set(part.variant.rays))
-            tubes = f' "integer tubesides" {part.tube_sides}' if part.tube_sides else ""
-            self.out.write(f'Shape "plymesh" "string filename" "{part.file}" {part.variant.alpha}{hidden_from(unseen)}{tubes}\n'
-                           "AttributeEnd\n")

@@ -58,7 +58,7 @@ class SocketReader:
     of the UV maps that images want ("": the mesh's), and `hangs_on_object` is whether the object counts that it is on.
     `baker`: a Baker, `baked`: BakedImages."""
 
-    surface = Surface()
+    surface, hangs_on_object = Surface(), False
 
     def _linked(self, socket):
         """The node and socket that feed it."""

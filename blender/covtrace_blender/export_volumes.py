@@ -1,154 +1,135 @@
-"""Volumes of materials as even media, and which of them a place is in."""
+"""Volume shaders as media."""
 
-import functools
 import math
 
 import numpy as np
 
-from .export_shaders import numbers
-from .shader_nodes.blackbody import blackbody
+from .coefficients import Coefficients
+from .media import VaryingMedium
+from .shader_nodes.blackbody import blackbodies
+from .shader_nodes.evaluator import Evaluator
 from .shader_nodes.flat import flat_output
-from .shader_nodes.light_path import RAYS
+from .shader_nodes.place import VolumePlace
 from .shader_nodes.unsupported import Unsupported
-from .solid import Solid
-
-
-# Absorption per unit of length of what shines: pbrt's media shine by as much as they absorb. A hundred units dim by a thousandth.
-LEAST_ABSORPTION = 1e-5
+from .volume_lattice import PROBES, lattice_for
 
 STEFAN_BOLTZMANN = 5.670373e-14 / math.pi  # of Cycles' blackbodies in volumes, by the fourth power of the temperature
 
-
-class Coefficients:
-    """Scattering and absorption of an even medium per unit of length, and the radiance that it adds on that, each in R, G, B; g: the mean
-    cosine of scattering."""
-
-    def __init__(self, scattering=(0, 0, 0), absorption=(0, 0, 0), g=0.0, light=(0, 0, 0)):
-        self.scattering, self.absorption, self.g, self.light = tuple(scattering), tuple(absorption), g, tuple(light)
-
-    def plus(self, other):
-        """The sum, with the mean of both cosines by how much each scatters."""
-        weights = sum(self.scattering), sum(other.scattering)
-        g = (self.g * weights[0] + other.g * weights[1]) / sum(weights) if sum(weights) > 0 else 0.0
-        return Coefficients(_sum(self.scattering, other.scattering), _sum(self.absorption, other.absorption), g, _sum(self.light, other.light))
-
-    def text(self):
-        """Parameters of pbrt's homogeneous medium."""
-        shines = max(self.light) > 0
-        absorption = [max(a, LEAST_ABSORPTION) for a in self.absorption] if shines else self.absorption
-        light = f' "rgb Le" [{numbers(c / a for c, a in zip(self.light, absorption))}]' if shines else ""
-        return f'"rgb sigma_s" [{numbers(self.scattering)}] "rgb sigma_a" [{numbers(absorption)}] "float g" {self.g:.9g}{light}'
+UNEVEN = 0.05  # of a colour's channel: what is less is hardly seen
 
 
-def _sum(first, second):
-    return [a + b for a, b in zip(first, second)]
+class _Sockets:
+    """Values of volume shaders' sockets at the places of an Evaluator; what is left out is told."""
+
+    def __init__(self, nodes, tell):
+        self._nodes, self.tell = nodes, tell
+
+    def number(self, socket):
+        return self._value(socket, self._nodes.number)
+
+    def colour(self, socket):
+        return np.maximum(self._value(socket, self._nodes.vector), 0)
+
+    def _value(self, socket, get):
+        try:
+            return np.asarray(get(socket), np.float32)
+        except Unsupported as problem:
+            self.tell(f"node '{problem.node.name}' at '{socket.name}' of a volume is not supported ({problem.reason}); the socket's own value "
+                      "is used")
+            value = np.asarray(socket.default_value, np.float32)
+            return value[:3] if value.ndim else value
+
+    def grid(self, node, name):
+        """(n, 3) of the attribute that a socket names; None where there is none."""
+        socket = node.inputs.get(name)
+        return self._nodes.place.grid(socket.default_value) if socket else None
 
 
-def _light_of_principled(node, colour_of, number_of):
+def _times(colour, number):
+    return colour * number[..., None]
+
+
+def _light_of_principled(node, sockets):
     """The radiance that a node Principled Volume adds per unit of length; its density does not count."""
-    strength, glow = (max(number_of(node.inputs[name]), 0) for name in ("Emission Strength", "Blackbody Intensity"))
-    light = [strength * max(c, 0) for c in colour_of(node.inputs["Emission Color"])] if strength > 0 else (0, 0, 0)
-    if glow > 0:
-        temperature = max(number_of(node.inputs["Temperature"]), 0)
+    strength, glow = (np.maximum(sockets.number(node.inputs[name]), 0) for name in ("Emission Strength", "Blackbody Intensity"))
+    light = _times(sockets.colour(node.inputs["Emission Color"]), strength)
+    if (glow > 0).any():
+        temperature = np.maximum(sockets.number(node.inputs["Temperature"]), 0).astype(float)
+        heat = sockets.grid(node, "Temperature Attribute")
+        temperature = temperature if heat is None else temperature * np.maximum(heat.mean(-1), 0)
         power = STEFAN_BOLTZMANN * (1 + glow * (temperature**4 - 1))
-        light = _sum(light, [power * max(c * t, 0) for c, t in zip(blackbody(temperature), colour_of(node.inputs["Blackbody Tint"]))])
+        shine = _times(blackbodies(temperature) * sockets.colour(node.inputs["Blackbody Tint"]), np.maximum(power, 0))
+        light = light + np.where((glow > 0)[..., None], shine, 0)
     return light
 
 
-def coefficients(node, colour_of, number_of, tell):
-    """The Coefficients of a volume shader's node, as Cycles has them.
-
-    colour_of(socket), number_of(socket): what a socket has everywhere. tell(text): what is left out. Raises Unsupported.
-    """
+def coefficients(node, sockets):
+    """The Coefficients of a volume shader's node, as Cycles has them, by _Sockets. Raises Unsupported."""
     def shader(socket):
-        if not socket.is_linked:
-            return Coefficients()
-        return coefficients(socket.links[0].from_node, colour_of, number_of, tell)
+        return coefficients(socket.links[0].from_node, sockets) if socket.is_linked else Coefficients()
 
     if node.type == "ADD_SHADER":
         return shader(node.inputs[0]).plus(shader(node.inputs[1]))
+    if node.type == "MIX_SHADER":
+        share = np.clip(sockets.number(node.inputs[0]), 0, 1)
+        return shader(node.inputs[1]).times(1 - share).plus(shader(node.inputs[2]).times(share))
     if node.type == "EMISSION":
-        strength = max(number_of(node.inputs["Strength"]), 0)
-        return Coefficients(light=[max(c, 0) * strength for c in colour_of(node.inputs["Color"])])
+        return Coefficients(light=_times(sockets.colour(node.inputs["Color"]), np.maximum(sockets.number(node.inputs["Strength"]), 0)))
     if node.type not in ("VOLUME_SCATTER", "VOLUME_ABSORPTION", "PRINCIPLED_VOLUME"):
-        raise Unsupported(node, "it is no even medium")
-    density = max(number_of(node.inputs["Density"]), 0)
-    colour = [max(c, 0) for c in colour_of(node.inputs["Color"])]
+        raise Unsupported(node, "it is no medium")
+    density, colour = np.maximum(sockets.number(node.inputs["Density"]), 0), sockets.colour(node.inputs["Color"])
     if node.type == "VOLUME_ABSORPTION":
-        return Coefficients(absorption=[max(1 - c, 0) * density for c in colour])
-    scattering, absorption, light = [c * density for c in colour], (0, 0, 0), (0, 0, 0)
-    g = number_of(node.inputs["Anisotropy"])
+        return Coefficients(absorption=_times(np.maximum(1 - colour, 0), density))
+    absorption, light = (0, 0, 0), (0, 0, 0)
     if node.type == "PRINCIPLED_VOLUME":
-        kept = [max(c, 0) ** 0.5 for c in colour_of(node.inputs["Absorption Color"])]
-        absorption = [max(1 - c, 0) * max(1 - k, 0) * density for c, k in zip(colour, kept)]
-        light = _light_of_principled(node, colour_of, number_of)
+        thick, tint = sockets.grid(node, "Density Attribute"), sockets.grid(node, "Color Attribute")
+        density = density if thick is None else density * np.maximum(thick.mean(-1), 0)
+        colour = colour if tint is None else colour * np.maximum(tint, 0)
+        kept = sockets.colour(node.inputs["Absorption Color"]) ** 0.5
+        absorption = _times(np.maximum(1 - colour, 0) * np.maximum(1 - kept, 0), density)
+        light = _light_of_principled(node, sockets)
     elif getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
-        tell(f"the phase function of '{node.name}' is not supported; Henyey-Greenstein takes its place")
-    return Coefficients(scattering, absorption, min(max(g, -0.99), 0.99), light)
+        sockets.tell(f"the phase function of '{node.name}' is not supported; Henyey-Greenstein takes its place")
+    return Coefficients(_times(colour, density), absorption, np.clip(sockets.number(node.inputs["Anisotropy"]), -0.99, 0.99), light)
+
+
+def medium_of(node, space, pixels_of, ray, owner, tell):
+    """The Coefficients or the VaryingMedium of a volume shader's node in a VolumeSpace; None: in no place that is known. pixels_of, ray,
+    owner: as places of nodes have them. tell(text): what is left out. Raises Unsupported."""
+    told = set()
+
+    def at(places):
+        place = VolumePlace(space, places, pixels_of, ray, owner)
+        return coefficients(node, _Sockets(Evaluator(place), told.add)), place
+
+    probes = space.random_places(PROBES) if space else np.zeros((1, 3), np.float32)
+    found, place = at(probes)
+    if not place.is_uniform:
+        def values_at(places):
+            return at(places)[0].values(len(places))
+
+        lattice = lattice_for(space, values_at)
+        found = Coefficients.of_values(lattice.sampled(values_at))
+        _tell_of_colours(found, told.add)
+    for text in sorted(told):
+        tell(text)
+    return found if place.is_uniform else VaryingMedium(found, lattice)
+
+
+def _tell_of_colours(found, tell):
+    """Warns where more than the density and the emission varies."""
+    parts = np.concatenate((found.scattering, found.absorption), axis=1)
+    density = parts.sum(-1)
+    mean = parts.sum(0, dtype=float) / max(density.sum(dtype=float), 1e-30)
+    stray = np.abs(parts - density[:, None] * mean).sum(0, dtype=float).max() / max(density.sum(dtype=float), 1e-30)
+    if stray > UNEVEN:
+        tell("the colour of its volume varies; all of it has the mean colour")
+    amount = found.scattering.sum(-1)
+    if amount.any() and np.ptp(found.g[amount > 0]) > UNEVEN:
+        tell("the anisotropy of its volume varies; all of it has the mean")
 
 
 def has_volume(material):
     """Whether a material has a volume, supported or not."""
     output = flat_output(material.node_tree) if material and material.use_nodes and material.node_tree else None
     return output is not None and output.inputs["Volume"].is_linked
-
-
-class Media:
-    """Writes even media into `out`, each once."""
-
-    def __init__(self, out):
-        self.out, self._coefficients, self._sums = out, {}, {}
-
-    def add(self, found):
-        """The name of a medium of these Coefficients."""
-        name = f"medium {len(self._coefficients)}"
-        self._coefficients[name] = found
-        self.out.write(f'MakeNamedMedium "{name}" "string type" "homogeneous" {found.text()}\n')
-        return name
-
-    def sum(self, names):
-        """The name of the medium where all these are at once, in any order, as in Cycles; "" of none."""
-        names = tuple(sorted(names))
-        if len(names) < 2:
-            return "".join(names)
-        if names not in self._sums:
-            self._sums[names] = self.add(functools.reduce(Coefficients.plus, (self._coefficients[name] for name in names)))
-        return self._sums[names]
-
-
-class Volumes:
-    """Instances whose materials have media. `add` them all before asking where a place is."""
-
-    def __init__(self):
-        self._solids, self._bodies, self._inverses = {}, [], []
-
-    def add(self, obj, matrix, medium, rays):
-        """rays: the kinds that see it."""
-        if abs(matrix.determinant()) < 1e-30 or not obj.data.polygons:
-            return
-        mesh = obj.data.as_pointer()
-        if mesh not in self._solids:
-            self._solids[mesh] = Solid(obj.data)
-        self._bodies.append((obj.name_full, self._solids[mesh], medium, set(rays)))
-        self._inverses.append(np.array(matrix.inverted()))
-
-    @functools.cached_property
-    def _boxes(self):
-        """(inverse matrix, low and high corner in its own space) of each body."""
-        solids = [solid for _, solid, _, _ in self._bodies]
-        return np.array(self._inverses), np.array([s.low for s in solids]), np.array([s.high for s in solids])
-
-    def media_at(self, place, but="", rays=RAYS):
-        """The names of the media of all that hold a place of the world and that one of these kinds of rays sees; `but`: the
-        name of an object that does not count."""
-        if not self._bodies:
-            return ()
-        inverses, low, high = self._boxes
-        # Few boxes hold the place; only these are worth rays.
-        places = inverses[:, :3, :3] @ np.array(place) + inverses[:, :3, 3]
-        found = []
-        for index in np.flatnonzero(((low <= places) & (places <= high)).all(1)):
-            name, solid, medium, seen_by = self._bodies[index]
-            if name != but and seen_by.intersection(rays) and solid.holds(places[index]):
-                found.append(medium)
-        return tuple(found)

@@ -1,5 +1,10 @@
 """Meshes in files, of which each has one material; objects consist of them."""
 
+from .export_shaders import numbers
+from .placement import placement
+from .shader_nodes.light_path import RAYS
+from .visibility import hidden_from
+
 
 class Part:
     """A mesh in a file, with a Variant of its material. motion: its transforms when the shutter opens and closes, or None.
@@ -7,3 +12,32 @@ class Part:
 
     def __init__(self, file, variant, motion, tube_sides):
         self.file, self.variant, self.motion, self.tube_sides = file, variant, motion, tube_sides
+
+    def text(self, hidden):
+        """pbrt's light and shape of it. hidden: the kinds of rays that do not see it."""
+        emission, light = self.variant.emission, ""
+        if emission:
+            image = f' "string filename" "{emission.texture}"' if emission.texture else ""
+            scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else f'"rgb L" [{numbers(emission.radiance)}]'
+            passes = ' "bool letslightpass" true' if self.variant.is_light_alone else ""
+            light = f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true{passes}\n'
+        unseen = hidden | (set(RAYS) - set(self.variant.rays))
+        tubes = f' "integer tubesides" {self.tube_sides}' if self.tube_sides else ""
+        return light + self.shapes(f"{self.variant.alpha}{hidden_from(unseen)}{tubes}")
+
+    def shapes(self, parameters):
+        """pbrt's shapes, with parameters that all of them have."""
+        return f'Shape "plymesh" "string filename" "{self.file}" {parameters}\n'
+
+
+def write_parts(out, media, parts, hidden, around, matrix):
+    """Writes Parts in their object's space. media: a Media; around: names of those that the object stands in; matrix: its own, to the
+    world."""
+    for part in parts:
+        out.write(f'AttributeBegin\nNamedMaterial "{part.variant.name}"\n')
+        if part.variant.medium:
+            inner = media.sum((media.placed(part.variant.medium, matrix), *around))
+            out.write(f'MediumInterface "{inner}" "{media.sum(around)}"\n')
+        if part.motion is not None:
+            out.write(placement("ConcatTransform", *part.motion))
+        out.write(f"{part.text(hidden)}AttributeEnd\n")

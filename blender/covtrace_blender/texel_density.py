@@ -36,8 +36,12 @@ class Placements:
 
     def only_matrix(self, obj):
         """4x4 from a mesh to the world; None of what has instances."""
-        key = self.key(obj)
-        return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
+        return None if self.key(obj) in self._instanced else self.sole_matrix(obj)
+
+    def sole_matrix(self, obj):
+        """The same, and that of what has one instance."""
+        matrices = self._matrices.get(self.key(obj), ())
+        return matrices[0] if len(matrices) == 1 else None
 
     def scale(self, obj):
         """The mean scale of a mesh in the world; of instances that of the first. To five digits: turns do not change it."""

@@ -48,11 +48,6 @@ class HeightsTest(NodeTilesTest):
 
         self.assert_nodes({"of object": waves("BUMP", "OBJECT", 0.1), "of world": waves("BUMP", "WORLD", 0.05)}, change,
                           mean_tolerance=0.05, most_of_structure=0.6)
-        tree = Tree("both")
-        waves("BOTH", "OBJECT", 0.1)(tree)
-        self.tile(2, tree.material)
-        self.export()
-        self.assertEqual(self.warnings, ["material 'both': Displacement turns the surface's normals and does not move it"])
 
     def test_objects_share_the_heights_of_displacement(self):
         """In one file for all scales, and one material for what is only turned."""

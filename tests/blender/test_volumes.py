@@ -173,11 +173,11 @@ class VolumesTest(BlenderTest):
         self.assertEqual(self.warnings, ["material 'filled': the colour of 'Transparent BSDF' around a volume is not supported and "
                                          "left out"])
 
-    def test_volumes_that_are_not_even_are_told_and_hide_nothing(self):
+    def test_volumes_that_are_none_are_told_and_hide_nothing(self):
         m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
         tree = m.node_tree
-        mix = tree.nodes.new("ShaderNodeMixShader")
-        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
+        surface = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        tree.links.new(surface.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         for value in mean(render("COVTRACE", 4)):
             self.assertAlmostEqual(value, 1, delta=0.01)

@@ -3,8 +3,7 @@
 import numpy as np
 
 from ..working_space import luminance
-from .blackbody import blackbody, temperature_of
-from .unsupported import Unsupported
+from .blackbody import blackbodies, blackbody, temperature_of
 
 
 def _hue(rgb, largest, spread):
@@ -76,9 +75,7 @@ def _constant(node, output, inputs):
 
 def _blackbody(node, output, inputs):
     kelvin = temperature_of(node)
-    if kelvin is None:
-        raise Unsupported(node, "its temperature is linked")
-    return blackbody(kelvin)
+    return blackbodies(inputs.number("Temperature")) if kelvin is None else blackbody(kelvin)
 
 
 NODES = {

@@ -57,6 +57,43 @@ class UvPlace(_Place):
         raise NeedsBody(node, "attributes do not follow from a UV map")
 
 
+class VolumePlace(_Place):
+    """(n, 3) places within `space`, which has `texture_space`, `matrix` and `grids` as VolumeSpace has them; None: anywhere."""
+
+    def __init__(self, space, places, pixels_of, ray=None, owner=None):
+        super().__init__(pixels_of, ray, owner)
+        self._space, self._places, self.is_uniform = space, places, True
+
+    def cosine(self):
+        return np.float32(1)  # as in Cycles, which takes the direction of sight for the normal
+
+    def uv_of(self, node, name):
+        return np.zeros((len(self._places), 3), np.float32)
+
+    def grid(self, name):
+        """(n, 3) of the attribute of this name; None where there is none."""
+        if not self._space or name not in self._space.grids:
+            return None
+        self.is_uniform = False
+        return self._space.grids[name](self._places)
+
+    def attribute(self, node, name, part, missing):
+        found = self.grid(name)
+        return np.full((len(self._places), 3), missing, np.float32) if found is None else found
+
+    def coordinates(self, node, kind):
+        if kind not in ("OBJECT", "GENERATED", "WORLD"):
+            raise Unsupported(node, f"volumes have no {kind.lower()}")
+        if not self._space or kind == "WORLD" and self._space.matrix is None:
+            raise Unsupported(node, "the world's coordinates are not known of what has instances" if self._space else "its place is not known")
+        self.is_uniform = False
+        if kind == "GENERATED":
+            low, size = self._space.texture_space
+            return ((self._places - low) / size).astype(np.float32)
+        matrix = self._space.matrix
+        return self._places if kind == "OBJECT" else (self._places @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
+
+
 class BodyPlace(_Place):
     """Texels of the atlas of `body`, which has `knows(kind)` and `values(kind, texels, shift)`; shift: by the share of a texel."""
 
