@@ -30,6 +30,8 @@ def write_lamp(out, lamp, matrix, end, hidden, images, warn):
     colour = [c * shaded for c, shaded in zip(_power(lamp), colour)]
     if max(colour) <= 0:
         return
+    if lamp.type == "AREA" and image is not None:  # which has its colour in the image
+        colour, image = [max(colour)] * 3, image * (np.array(colour) / max(colour))
     if lamp.type != "AREA":  # no other lamp grows with its object
         matrix, end = matrix.normalized(), end and end.normalized()
     out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
@@ -38,7 +40,7 @@ def write_lamp(out, lamp, matrix, end, hidden, images, warn):
         out.write(f'LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [{numbers(colour)}] '
                   f'"float angle" {math.degrees(lamp.angle):.9g}{hidden_from(hidden) if has_extent(lamp) else ""}\n')
     elif lamp.type == "AREA":
-        _write_area(out, lamp, colour, hidden)
+        _write_area(out, lamp, colour, hidden, images.write(image) if image is not None else None)
     else:
         cone = ""
         if is_spot:
@@ -112,9 +114,11 @@ def _area(corners):
     return 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, corners[1:] + corners[:1]))
 
 
-def _write_area(out, lamp, colour, hidden):
-    """Shines along -z of its object, from one side, with the radiance W / (pi area); in Cycles 3.4 W / (4 area) (measured)."""
+def _write_area(out, lamp, colour, hidden, file):
+    """file: of an image that multiplies the colour, the same in all channels then; or None. Shines along -z of its object, from one side, with the radiance W / (pi area); in Cycles 3.4 W / (4 area) (measured)."""
     corners, grid, gain = _corners(lamp), "", 1
+    width, height = (2 * max(abs(corner[axis]) for corner in corners) for axis in (0, 1))
+    uvs = numbers(v for x, y in corners for v in (x / width + 0.5, y / height + 0.5))
     spread = max(lamp.spread, LEAST_SPREAD)
     if spread < MOST_SPREAD:
         # As much light as without a grid: the integral of sin cos (1 - tan / tan(half)) over the angle.
@@ -128,8 +132,10 @@ def _write_area(out, lamp, colour, hidden):
     points = numbers(v for x, y in corners for v in (x, y, 0))
     # Clockwise seen from +z of the object, so that the front looks along -z.
     indices = " ".join(f"0 {k + 1} {k}" for k in range(1, len(corners) - 1))
-    out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}] "bool letslightpass" true{grid}\n'
-              f'Shape "trianglemesh" "point3 P" [{points}] "integer indices" [{indices}]{hidden_from(hidden)}\n')
+    light = f'"rgb L" [{numbers(radiance)}]' if file is None else f'"float scale" {radiance[0]:.9g} "string filename" "{file}"'
+    pattern = "" if file is None else f' "point2 uv" [{uvs}]'
+    out.write(f'AreaLightSource "diffuse" {light} "bool letslightpass" true{grid}\n'
+              f'Shape "trianglemesh" "point3 P" [{points}] "integer indices" [{indices}]{pattern}{hidden_from(hidden)}\n')
 
 
 def area_scale(lamp, matrix):

@@ -81,7 +81,7 @@ class SceneExporter:
         out.write('WorldBegin\nMediumInterface "" ""\n')
         self.materials, self.atlases, self.bodies = MaterialExporter(out, self.folder, self.warn), Atlases(), {}
         self.random_materials, self.random = {}, None
-        self.lamp_images = PhotometricImages(self.folder)
+        self.lamp_images = PhotometricImages(self.folder, self.materials.files.source)
         self._write_world()
         self._look_at_instances()
         self._look_at_bodies()

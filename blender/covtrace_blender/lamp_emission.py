@@ -1,19 +1,23 @@
 """Light of a lamp as its nodes make it: a colour, and where they have a photometric file an image over directions."""
 
+import math
+
 import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
-from .photometry import Damaged
+from .photometry import SIZE, Damaged, directions_of_rows
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .shader_nodes.evaluator import Evaluator
 from .shader_nodes.flat import flat_socket
-from .shader_nodes.place import UvPlace
+from .shader_nodes.place import LampPlace
 from .shader_nodes.unsupported import Unsupported
 
 
 _MATHS = {"ADD": np.add, "SUBTRACT": np.subtract, "MULTIPLY": np.multiply,
           "DIVIDE": lambda a, b: np.where(np.equal(b, 0), 0, np.divide(a, np.where(np.equal(b, 0), 1, b)))}
+
+ROWS_OF_AREA = 256  # of images over the UV map of area lamps, and their columns; what they light is blurred
 
 # Share of an image by which its channels may differ and still be one colour; the light of a lamp has one in all directions.
 SAME_COLOUR = 1e-3
@@ -27,7 +31,8 @@ class LampEmission:
         self.lamp, self.images, self.directions, self.warn = lamp, images, directions, warn
 
     def read(self):
-        """The colour by which the nodes multiply the lamp's power, and an image (h, w) that multiplies it, or None."""
+        """The colour by which the nodes multiply the lamp's power, and an image (h, w) over directions that multiplies it, (h, w, 3) over the
+        UV map of area lamps, or None."""
         lamp = self.lamp
         if not lamp.use_nodes or not lamp.node_tree:
             return (1, 1, 1), None
@@ -36,6 +41,8 @@ class LampEmission:
         if light.ndim == 1:
             return tuple(float(c) for c in light), None
         light = np.maximum(light, 0)
+        if lamp.type == "AREA":
+            return (float(light.max()),) * 3, light / max(light.max(), 1e-30)
         colour = light.mean((0, 1))
         if not colour.any():
             return (0, 0, 0), None
@@ -74,7 +81,7 @@ class LampEmission:
         number = self._linked_number(node)
         if number is not None:
             return np.asarray(number)[..., None] * np.ones(3)
-        colour = _constant(socket, is_number=False) if node else None
+        colour = self._evaluated(socket, is_number=False) if node else None
         if colour is not None:
             return colour
         self._tell_linked(socket)
@@ -83,7 +90,7 @@ class LampEmission:
     def _number(self, socket):
         number = self._linked_number(_node_at(socket))
         if number is None and socket.is_linked:
-            number = _constant(socket, is_number=True)
+            number = self._evaluated(socket, is_number=True)
         if number is None:
             self._tell_linked(socket)
             number = socket.default_value
@@ -152,24 +159,50 @@ class LampEmission:
         is_normal = link.from_node.type == "TEX_COORD" and link.from_socket.name == "Normal"
         return np.array(matrix) if is_normal else None
 
+    def _evaluated(self, socket, is_number):
+        """The number or colour that a socket gets for the rays that lamps are sampled by, which in Cycles are of no kind, everywhere or as an
+        image; None where it hangs on anything else."""
+        def at(count):
+            uv, normals = self._places(count)
+            place = LampPlace(uv, normals, self.images.source)
+            nodes = Evaluator(place)
+            value = np.asarray(nodes.number(flat) if is_number else nodes.vector(flat), float)
+            return None if place.hangs_on_angle else value, place.is_uniform
+
+        flat = flat_socket(socket)
+        try:
+            value, is_uniform = at(1)
+            if value is None or is_uniform:
+                return value if value is None or value.shape in ((), (3,)) else value[0]
+            if self.lamp.type == "SUN":
+                return value.reshape(-1, 3)[0] if not is_number else value.ravel()[0]
+            rows = ROWS_OF_AREA if self.lamp.type == "AREA" else SIZE
+            value, _ = at(rows)
+        except Unsupported:
+            return None
+        return np.broadcast_to(value, (rows * rows, *value.shape[1:])).reshape(rows, rows, *value.shape[1:])
+
+    def _places(self, rows):
+        """(UV, normals or None) of LampPlace, for an image of so many rows and columns from the top."""
+        if self.lamp.type == "AREA":
+            middles = (np.arange(rows) + 0.5) / rows
+            u, v = np.meshgrid(middles, middles[::-1])
+            return np.column_stack((u.ravel(), v.ravel())), None
+        if self.lamp.type == "SUN":
+            return np.full((rows * rows, 2), 0.5), np.tile(self.directions, (rows * rows, 1))
+        away = directions_of_rows(np.arange(rows), rows).reshape(-1, 3) @ np.asarray(self.directions).T
+        away /= np.linalg.norm(away, axis=1, keepdims=True)
+        x, y, z = away.T
+        if self.lamp.type == "SPOT":
+            # The cone's circle fills the square of the map.
+            widen = 0.5 / (math.tan(0.5 * self.lamp.spot_size) * np.maximum(-z, 1e-6))
+            return np.column_stack((0.5 + widen * x, 0.5 + widen * y)), away
+        return np.column_stack((0.5 * (1 - np.arctan2(x, y) / math.pi), 1 - np.arccos(np.clip(z, -1, 1)) / math.pi)), away
+
     def _tell_linked(self, socket):
         if socket.is_linked:
             self.warn(f"lamp '{self.lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
                       "the socket's own value is used")
-
-
-def _constant(socket, is_number):
-    """The number or colour that a socket gets in all directions for the rays that lamps are sampled by, which in Cycles are of no kind;
-    None where it hangs on anything else."""
-    def pixels_of(image):
-        raise Unsupported(socket.node, f"the image '{image.name}' is not the same everywhere")
-    place = UvPlace(np.zeros((1, 2), np.float32), pixels_of, ray="lamp")
-    try:
-        nodes, flat = Evaluator(place), flat_socket(socket)
-        value = np.asarray(nodes.number(flat) if is_number else nodes.vector(flat), float)
-    except Unsupported:
-        return None
-    return None if place.uv_maps or place.hangs_on_angle else value
 
 
 def _link_at(socket):

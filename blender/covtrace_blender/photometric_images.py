@@ -12,8 +12,9 @@ from .photometry import Profile
 class PhotometricImages:
     """Makes each image and each file once: a house has a hundred lamps of one kind."""
 
-    def __init__(self, folder):
-        self.folder, self._profiles, self._images, self._files = folder, {}, {}, {}
+    def __init__(self, folder, source=None):
+        """source: pixels of images, as TextureFiles has it."""
+        self.folder, self.source, self._profiles, self._images, self._files = folder, source, {}, {}, {}
 
     def of(self, text, directions):
         """The intensity that a file's text has in directions: for a matrix (3, 3) the image that it makes, for a vector one number. Raises
@@ -30,10 +31,10 @@ class PhotometricImages:
         return self._images[key]
 
     def write(self, image):
-        """The name of the file that holds a grey image."""
+        """The name of the file that holds an image, (h, w) or (h, w, 3)."""
         values = np.ascontiguousarray(image, np.float32)
         digest = hashlib.sha256(values.tobytes()).digest()
         if digest not in self._files:
             self._files[digest] = f"lamp{len(self._files)}.pfm"
-            write_pfm(os.path.join(self.folder, self._files[digest]), np.repeat(values[..., None], 3, -1))
+            write_pfm(os.path.join(self.folder, self._files[digest]), values if values.ndim == 3 else np.repeat(values[..., None], 3, -1))
         return self._files[digest]

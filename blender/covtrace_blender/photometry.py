@@ -72,13 +72,15 @@ class Profile:
     def image(self, matrix):
         """(SIZE, SIZE), as pbrt's goniometric lights have it. matrix (3, 3): takes directions of the light's space to those of
         the lamp's."""
-        rows = []
-        for y in np.array_split(np.arange(SIZE), 16):  # in parts, for the memory's sake
-            u, v = np.meshgrid((np.arange(SIZE) + 0.5) / SIZE, (y + 0.5) / SIZE)
-            w = equal_area_directions(u, v)
-            # The pole of the image is y of the light's space.
-            rows.append(self.at(w[..., [0, 2, 1]] @ np.asarray(matrix).T))
-        return np.concatenate(rows)
+        # In parts, for the memory's sake
+        return np.concatenate([self.at(directions_of_rows(rows, SIZE) @ np.asarray(matrix).T) for rows in np.array_split(np.arange(SIZE), 16)])
+
+
+def directions_of_rows(rows, size):
+    """(n, size, 3) unit directions of n rows of a goniometric light's image, of as many texels as rows, in the light's space."""
+    u, v = np.meshgrid((np.arange(size) + 0.5) / size, (rows + 0.5) / size)
+    # The pole of the image is y of the light's space.
+    return equal_area_directions(u, v)[..., [0, 2, 1]]
 
 
 def equal_area_directions(u, v):

@@ -94,6 +94,30 @@ class VolumePlace(_Place):
         return self._places if kind == "OBJECT" else (self._places @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
 
 
+class LampPlace(_Place):
+    """Places on a lamp, as its light is sampled: uv (n, 2), which Cycles has on areas, in the cone of spots and around points; normals
+    (n, 3), away from it in its space, or None of area lamps. What else lamps have not is zero there."""
+
+    def __init__(self, uv, normals, pixels_of):
+        super().__init__(pixels_of, "lamp", None)
+        self._uv, self._normals, self.is_uniform = uv, normals, True
+
+    def uv_of(self, node, name):
+        self.is_uniform = False
+        return np.column_stack((self._uv, np.zeros(len(self._uv)))).astype(np.float32)
+
+    def attribute(self, node, name, part, missing):
+        return np.full((len(self._uv), 3), missing, np.float32)
+
+    def coordinates(self, node, kind):
+        if kind == "GENERATED":
+            return np.zeros((len(self._uv), 3), np.float32)
+        if kind != "NORMAL" or self._normals is None:
+            raise Unsupported(node, f"lamps have no {kind.lower()} here")
+        self.is_uniform = False
+        return self._normals.astype(np.float32)
+
+
 class BodyPlace(_Place):
     """Texels of the atlas of `body`, which has `knows(kind)` and `values(kind, texels, shift)`; shift: by the share of a texel."""
 

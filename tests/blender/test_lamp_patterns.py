@@ -1,0 +1,52 @@
+"""Patterns on lamps, against Cycles."""
+
+import bpy
+from addon_support import CyclesTest
+
+
+class LampPatternsTest(CyclesTest):
+    def patterned(self, kind, coordinate, texture, **values):
+        """A lamp whose emission has the colour of a texture on an output of Texture Coordinate."""
+        lamp = self.lamp(kind, **values).data
+        lamp.use_nodes = True
+        tree = lamp.node_tree
+        places = self.node(tree, "TexCoord")
+        tree.links.new(places.outputs[coordinate], texture(tree).inputs["Vector"])
+        tree.links.new(next(n for n in tree.nodes if n.type.startswith("TEX_") and n.type != "TEX_COORD").outputs["Color"],
+                       tree.nodes["Emission"].inputs["Color"])
+        self.plane(self.shader("BsdfDiffuse", Color=(0.8, 0.8, 0.8, 1)), size=8)
+        return lamp
+
+    def picture(self, tree):
+        """Its quarters have four colours."""
+        image = bpy.data.images.new("quarters", 8, 8, float_buffer=True)
+        pixels = []
+        for y in range(8):
+            for x in range(8):
+                pixels += [(0.1, 1.0)[x > 3], (0.05, 0.6)[y > 3], 0.2, 1]
+        image.pixels[:] = pixels
+        node = self.node(tree, "TexImage")
+        node.image = image
+        return node
+
+    def test_a_picture_on_an_area_lamp(self):
+        self.patterned("AREA", "UV", self.picture, energy=100, size=2, shape="RECTANGLE", size_y=1.2, location=(0.3, 0, 1), color=(1, 0.8, 0.5))
+        self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=128)
+        self.export()
+        self.assertEqual(self.warnings, [])
+
+    def test_a_grey_picture_before_a_spot(self):
+        def grey(tree):
+            node = self.picture(tree)
+            node.image.pixels[:] = [c for pixel in range(64) for c in ((0.1, 0.4, 1.0)[pixel % 8 // 3],) * 3 + (1,)]
+            return node
+
+        self.patterned("SPOT", "UV", grey, energy=200, spot_size=1.2, spot_blend=0.2, shadow_soft_size=0, location=(0, 0, 2))
+        self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=128)
+
+    def test_a_gradient_around_a_point(self):
+        def steps(tree):
+            return self.node(tree, "TexGradient")
+
+        self.patterned("POINT", "Normal", steps, energy=100, shadow_soft_size=0, location=(0.2, 0, 1))
+        self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=128)
