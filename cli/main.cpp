@@ -16,6 +16,7 @@
 #include "cli/failure.h"
 #include "cli/main_stack.h"
 #include "cli/message.h"
+#include "cli/other_names.h"
 #include "core/error.h"
 #include "render/version.h"
 #include "scene/names.h"
@@ -67,7 +68,9 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
     if (option != unknown.end()) {
         for (const CLI::Option* o : command.get_options())
             for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
-        return "unknown option " + in_quotes(*option) + did_you_mean(*option, known);
+        const auto other = covtrace::cli::known_by_another_name(*option, known);
+        return "unknown option " + in_quotes(*option) +
+               (other ? "; did you mean " + in_quotes(*other) + "?" : did_you_mean(*option, known));
     }
     return e.what();
 }

@@ -163,6 +163,14 @@ class WrongCommandLines(CliTest):
         self.assert_fails(result, USAGE, 'unknown option "--sppp"; did you mean "--spp"?')
         self.assertNotIn("scene.pbrt", result.stderr)
 
+    def test_options_of_other_renderers_are_known(self):
+        for name, ours in (("--samples", "--spp"), ("-s", "--spp"), ("--outfile=a.exr", "--output"), ("--width", "--resolution"),
+                           ("--hdri", "--environment"), ("--nthreads", "--threads")):
+            self.assert_fails(self.run_program("render", name, "3", "scene.pbrt"), USAGE, f'did you mean "{ours}"?')
+        # Commands suggest their own options alone
+        self.assert_fails(self.run_program("denoise", "--spp", "3", "a.exr"), USAGE, 'did you mean "--samples"?')
+        self.assertNotIn("environment", self.run_program("merge", "--hdri", "a.exr").stderr)
+
     def test_usage_is_checked_before_the_scene_is_read(self):
         result = self.run_program("render", "missing.pbrt", "--time", "soon")
         self.assert_fails(result, USAGE, "--time")
