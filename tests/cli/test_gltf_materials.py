@@ -3,6 +3,7 @@
 The square of gltf_file shows one value of the BRDF times the cosine: a directional light of 1, one direction of view.
 """
 
+import cmath
 import functools
 import math
 import unittest
@@ -33,6 +34,33 @@ def ggx(v, l, alpha_t, alpha_b, tangent):
 def schlick(f0, f90, v, l):
     h = normalized([x + y for x, y in zip(v, l)])
     return [a + (f90 - a) * (1 - dot(v, h)) ** 5 for a in f0]
+
+
+def matching(nm):
+    """The colour matching functions of CIE 1931 (Wyman, Sloan and Shirley 2013)."""
+    def lobe(peak, centre, left, right):
+        return peak * math.exp(-0.5 * ((nm - centre) / (left if nm < centre else right)) ** 2)
+
+    return (lobe(1.056, 599.8, 37.9, 31.0) + lobe(0.362, 442.0, 16.0, 26.7) - lobe(0.065, 501.1, 20.4, 26.2),
+            lobe(0.821, 568.8, 46.9, 40.5) + lobe(0.286, 530.9, 16.3, 31.1), lobe(1.217, 437.0, 11.8, 36.0) + lobe(0.681, 459.0, 26.0, 13.8))
+
+
+def film_colour(eta, thickness, n, cosine):
+    """What a film of so many nm on a surface of index n reflects, R, G, B: Airy's sum over the spectrum, mean of both polarisations."""
+    cos_film, cos_n = (math.sqrt(1 - (1 - cosine**2) / i**2) for i in (eta, n))
+    pairs = (cosine, eta * cos_film, n * cos_n), (1 / cosine, eta / cos_film, n / cos_n)
+    total, white = [0, 0, 0], [0, 0, 0]
+    for nm in range(360, 831, 2):
+        turn = cmath.exp(2j * math.pi * 2 * eta * thickness * cos_film / nm)
+        reflectance = 0
+        for a, b, c in pairs:
+            first, second = (a - b) / (a + b), (b - c) / (b + c)
+            reflectance += 0.5 * abs((first + second * turn) / (1 + first * second * turn)) ** 2
+        for k, m in enumerate(matching(nm)):
+            total[k] += reflectance * m
+            white[k] += m
+    rows = (3.2404542, -1.5371385, -0.4985314), (-0.969266, 1.8760108, 0.041556), (0.0556434, -0.2040259, 1.0572252)
+    return [dot(row, total) / dot(row, white) for row in rows]
 
 
 @functools.cache
@@ -120,6 +148,22 @@ class GltfMaterials(CliTest):
                 expected = [share * c / math.pi * abs(l[2]) for c in colour]
                 self.assert_close(self.seen(material, v, l, spp=2048, images=images), expected, 0.03, (v, l))
             self.assert_close(self.seen(material, *PAIRS[1], images=images), [0, 0, 0], 0, PAIRS[1])
+
+    def test_iridescence(self):
+        film = {"iridescenceFactor": 0.7, "iridescenceIor": 1.8, "iridescenceThicknessMinimum": 100, "iridescenceThicknessMaximum": 500}
+        textured = {**film, "iridescenceThicknessTexture": {"index": 0}, "iridescenceTexture": {"index": 0}}
+        image = png(2, 2, [(128, 51, 0, 255)] * 4)  # half of the weight, a fifth of the way from least to most
+        for v, l in PAIRS:
+            cosine = dot(v, normalized([x + y for x, y in zip(v, l)]))
+            for extension, weight, thickness in ((film, 0.7, 500), (textured, 0.7 * 128 / 255, 180)):
+                found = self.seen({"pbrMetallicRoughness": BLACK, "extensions": {"KHR_materials_iridescence": extension}}, v, l,
+                                  images=[image] if extension is textured else [])
+                share = [(1 - weight) * bare + weight * coloured
+                         for bare, coloured in zip(schlick([0.04] * 3, 1, v, l), film_colour(1.8, thickness, 1.5, cosine))]
+                # The spectrum is known to some hundredths of the strongest colour
+                scale = ggx(v, l, 0.25, 0.25, 0) * l[2]
+                for a, b in zip(found, share):
+                    self.assertAlmostEqual(a / scale, b, delta=0.06 * max(share), msg=f"{thickness} nm at {v} {l}: {found} / {scale}, {share}")
 
     def test_specular(self):
         colour, factor, ior = [1, 0.5, 0.1], 0.6, 1.7
