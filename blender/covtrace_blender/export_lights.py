@@ -22,12 +22,17 @@ def write_lamp(out, lamp, matrix, end, hidden, images, warn):
     """One lamp; `matrix`: of its object; `end`: the same when the shutter closes, or None where it stays; `hidden`: the kinds of
     rays that do not find it; `images`: PhotometricImages. Rays pass a lamp, as in Cycles."""
     scale = [max(matrix.col[axis].xyz.length, 1e-12) for axis in range(3)]
-    is_spot, is_ball = lamp.type == "SPOT", lamp.type in ("POINT", "SPOT")
-    if is_spot and bpy.app.version < (4, 0, 0):  # Cycles 3.4 takes nothing of a spot's scale, 4.5 does
+    if lamp.type == "SPOT" and bpy.app.version < (4, 0, 0):  # Cycles 3.4 takes nothing of a spot's scale, 4.5 does
         scale = [1.0, 1.0, 1.0]
-    has_radius = is_ball and (lamp.shadow_soft_size > 0 or end is not None)
-    colour, image = LampEmission(lamp, images, _directions(lamp, scale, has_radius), warn).read()
-    colour = [c * shaded for c, shaded in zip(_power(lamp), colour)]
+    has_radius = lamp.type in ("POINT", "SPOT") and (lamp.shadow_soft_size > 0 or end is not None)
+    for colour, image in LampEmission(lamp, images, _directions(lamp, scale, has_radius), warn).read():
+        _write_light(out, lamp, matrix, end, hidden, images, [c * shaded for c, shaded in zip(_power(lamp), colour)], image, scale, has_radius)
+
+
+def _write_light(out, lamp, matrix, end, hidden, images, colour, image, scale, has_radius):
+    """One light of a lamp: watts per channel, and the image of LampEmission; scale: of its object, as far as it counts; has_radius: whether
+    it is a ball."""
+    is_spot = lamp.type == "SPOT"
     if max(colour) <= 0:
         return
     if lamp.type == "AREA" and image is not None:  # which has its colour in the image

@@ -31,25 +31,26 @@ class LampEmission:
         self.lamp, self.images, self.directions, self.warn = lamp, images, directions, warn
 
     def read(self):
-        """The colour by which the nodes multiply the lamp's power, and an image (h, w) over directions that multiplies it, (h, w, 3) over the
-        UV map of area lamps, or None."""
+        """The lights whose sum it is: [(the colour by which the nodes multiply the lamp's power, an image (h, w) over directions that
+        multiplies it, (h, w, 3) over the UV map of area lamps, or None)]."""
         lamp = self.lamp
         if not lamp.use_nodes or not lamp.node_tree:
-            return (1, 1, 1), None
+            return [((1, 1, 1), None)]
         output = lamp.node_tree.get_output_node("CYCLES")
         light = self._emitted(output.inputs["Surface"]) if output else np.zeros(3)
         if light.ndim == 1:
-            return tuple(float(c) for c in light), None
+            return [(tuple(float(c) for c in light), None)]
         light = np.maximum(light, 0)
         if lamp.type == "AREA":
-            return (float(light.max()),) * 3, light / max(light.max(), 1e-30)
+            return [((float(light.max()),) * 3, light / max(light.max(), 1e-30))]
         colour = light.mean((0, 1))
         if not colour.any():
-            return (0, 0, 0), None
+            return []
         image = light.mean(-1) / colour.mean()
         if abs(light - image[..., None] * colour).max() > SAME_COLOUR * light.max():
-            self.warn(f"lamp '{lamp.name}': its colour varies with the direction; its mean is used")
-        return tuple(float(c) for c in colour), image
+            # An image over directions is grey, so that each channel is a light of its own.
+            return [(tuple(np.eye(3)[c] * colour[c]), light[..., c] / colour[c]) for c in range(3) if colour[c] > 0]
+        return [(tuple(float(c) for c in colour), image)]
 
     def _emitted(self, socket):
         """The colours (3) or (h, w, 3) that the tree of shaders at a socket emits: of each Emission the share that mixtures

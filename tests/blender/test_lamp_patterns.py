@@ -35,14 +35,23 @@ class LampPatternsTest(CyclesTest):
         self.export()
         self.assertEqual(self.warnings, [])
 
+    SPOT = dict(energy=200, spot_size=1.2, spot_blend=0.2, location=(0, 0, 2))
+
     def test_a_grey_picture_before_a_spot(self):
         def grey(tree):
             node = self.picture(tree)
             node.image.pixels[:] = [c for pixel in range(64) for c in ((0.1, 0.4, 1.0)[pixel % 8 // 3],) * 3 + (1,)]
             return node
 
-        self.patterned("SPOT", "UV", grey, energy=200, spot_size=1.2, spot_blend=0.2, shadow_soft_size=0, location=(0, 0, 2))
+        self.patterned("SPOT", "UV", grey, shadow_soft_size=0, **self.SPOT)
+        self.assertEqual(self.export().count('"goniometric"'), 1)
         self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=128)
+
+    def test_a_picture_in_colours_is_three_lights(self):
+        self.patterned("SPOT", "UV", self.picture, shadow_soft_size=0.01, **self.SPOT)
+        self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=128)
+        self.assertEqual(self.export().count("goniometricfilename"), 3)
+        self.assertEqual(self.warnings, [])
 
     def test_a_gradient_around_a_point(self):
         def steps(tree):
