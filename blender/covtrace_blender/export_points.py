@@ -10,8 +10,8 @@ RADIUS = 0.01  # of points that have none, as in Blender
 
 
 class Spheres(Part):
-    """Spheres of a Variant of their material: (n, 3) centres, (n,) radii. matrix: 4x4 to the world; None where there are several. As
-    in Cycles, an uneven scale makes ellipsoids of these alone."""
+    """Spheres of a Variant of their material: (n, 3) centres, (n,) radii. matrix: 4x4 to the world; None where there are several: an
+    uneven scale makes ellipsoids of these alone. Others stay round, which is nearer to Cycles, though not the same."""
 
     def __init__(self, centres, radii, variant, matrix):
         super().__init__(None, variant, None, 0)

@@ -33,7 +33,7 @@ class PointsTest(CyclesTest):
         return obj
 
     def test_points_are_spheres_of_their_radius(self):
-        self.cloud(self.shader("BsdfDiffuse", Color=(0.8, 0.4, 0.2, 1)), 0.12).scale = (1, 1.3, 0.7)
+        self.cloud(self.shader("BsdfDiffuse", Color=(0.8, 0.4, 0.2, 1)), 0.12).scale = (0.9, 0.9, 0.9)
         self.plane(self.shader("BsdfDiffuse", Color=(0.3, 0.3, 0.3, 1)), size=6, z=-0.3)
         self.lamp("SUN", energy=3, angle=0.1).rotation_euler = (0.6, 0.4, 0)
         self.assert_parts_as_cycles(0.05, 128, samples_of_cycles=128)
