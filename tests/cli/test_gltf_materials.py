@@ -46,7 +46,7 @@ def matching(nm):
 
 
 def film_colour(eta, thickness, n, cosine):
-    """What a film of so many nm on a surface of index n reflects, R, G, B: Airy's sum over the spectrum, mean of both polarisations."""
+    """Reflectance, as R, G, B, of a film of so many nm on a surface of index n: Airy's sum over the spectrum, mean of both polarisations."""
     cos_film, cos_n = (math.sqrt(1 - (1 - cosine**2) / i**2) for i in (eta, n))
     pairs = (cosine, eta * cos_film, n * cos_n), (1 / cosine, eta / cos_film, n / cos_n)
     total, white = [0, 0, 0], [0, 0, 0]
