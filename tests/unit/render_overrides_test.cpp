@@ -108,6 +108,12 @@ TEST(Defaults, CountEveryEmitter) {
                             "[1 1 1]\n" +
                             ball)
                      .no_lights);
+    const std::string grid =
+        "MakeNamedMedium \"fire\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
+        "\"integer ny\" 1 \"integer nz\" 1 \"float density\" [ 1 1 ] ";
+    EXPECT_FALSE(read_world(grid + "\"float temperature\" [ 2000 900 ]\n" + ball).no_lights);
+    EXPECT_FALSE(read_world(grid + "\"rgb emission\" [ 1 0 0 0 0 0 ]\n" + ball).no_lights);
+    EXPECT_TRUE(read_world(grid + "\n" + ball).no_lights);
     EXPECT_TRUE(read_world("AreaLightSource \"diffuse\"\n").no_camera);
     SceneDescription scene = read_world(ball);
     apply({}, scene);
