@@ -165,7 +165,9 @@ class LampEmission:
         image; None where it hangs on anything else."""
         def at(count):
             uv, normals = self._places(count)
-            place = LampPlace(uv, normals, self.images.source)
+            if bpy.app.version < (4, 0, 0):
+                uv = None  # pictures lie otherwise in Cycles 3.4
+            place = LampPlace(count * count, uv, normals, self.images.source)
             nodes = Evaluator(place)
             value = np.asarray(nodes.number(flat) if is_number else nodes.vector(flat), float)
             return None if place.hangs_on_angle else value, place.is_uniform

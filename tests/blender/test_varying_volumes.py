@@ -62,7 +62,7 @@ class VaryingVolumesTest(BlenderTest):
     def test_fog_of_noise(self):
         self.bank()
         self.point((1, 0, 2), 200)
-        self.assert_parts(0.05)
+        self.assert_parts(0.08)  # of what the fog of a noise sends here, some hundredths are noise of both renders
         self.assertIn('"uniformgrid"', self.export())
         self.assertEqual(self.warnings, [])
 

@@ -95,23 +95,25 @@ class VolumePlace(_Place):
 
 
 class LampPlace(_Place):
-    """Places on a lamp, as its light is sampled: uv (n, 2), which Cycles has on areas, in the cone of spots and around points; normals
-    (n, 3), away from it in its space, or None of area lamps. What else lamps have not is zero there."""
+    """`count` places on a lamp, as its light is sampled: uv (n, 2), which Cycles has on areas, in the cone of spots and around points, or
+    None where that is not known; normals (n, 3), away from it in its space, or None of area lamps. What else lamps have not is zero there."""
 
-    def __init__(self, uv, normals, pixels_of):
+    def __init__(self, count, uv, normals, pixels_of):
         super().__init__(pixels_of, "lamp", None)
-        self._uv, self._normals, self.is_uniform = uv, normals, True
+        self._count, self._uv, self._normals, self.is_uniform = count, uv, normals, True
 
     def uv_of(self, node, name):
+        if self._uv is None:
+            raise Unsupported(node, "lamps have another UV map in this version of Blender")
         self.is_uniform = False
         return np.column_stack((self._uv, np.zeros(len(self._uv)))).astype(np.float32)
 
     def attribute(self, node, name, part, missing):
-        return np.full((len(self._uv), 3), missing, np.float32)
+        return np.full((self._count, 3), missing, np.float32)
 
     def coordinates(self, node, kind):
         if kind == "GENERATED":
-            return np.zeros((len(self._uv), 3), np.float32)
+            return np.zeros((self._count, 3), np.float32)
         if kind != "NORMAL" or self._normals is None:
             raise Unsupported(node, f"lamps have no {kind.lower()} here")
         self.is_uniform = False
