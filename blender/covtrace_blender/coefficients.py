@@ -7,13 +7,16 @@ from .export_shaders import numbers
 # Absorption per unit of length of what shines: pbrt's media shine by as much as they absorb. A hundred units dim by a thousandth.
 LEAST_ABSORPTION = 1e-5
 
+# Of all that is per unit of length: nodes may give any number, and products of two of these are finite in single precision.
+MOST = 1e15
+
 
 class Coefficients:
     """Scattering and absorption of a medium per unit of length, and the radiance that it adds on that: (3,) in R, G, B, or (n, 3) at places;
     g: the mean cosine of scattering, () or (n,)."""
 
     def __init__(self, scattering=(0, 0, 0), absorption=(0, 0, 0), g=0.0, light=(0, 0, 0)):
-        self.scattering, self.absorption, self.light = (np.asarray(part, np.float32) for part in (scattering, absorption, light))
+        self.scattering, self.absorption, self.light = (np.minimum(part, MOST).astype(np.float32) for part in (scattering, absorption, light))
         self.g = np.asarray(g, np.float32)
 
     def plus(self, other):

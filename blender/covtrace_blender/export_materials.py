@@ -14,7 +14,7 @@ from .export_shaders import squared, stretch_of_glossy, stretch_of_layers
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import medium_of
-from .media import Media, VaryingMedium
+from .media import Media
 from .node_signature import all_nodes
 from .owner import Owner, asked_of_owner
 from .shader_nodes.flat import flat_output
@@ -46,6 +46,7 @@ class MaterialExporter(SumExporter):
         self.files, self.media = TextureFiles(folder, warn), Media(out)
         self.baker, self.baked = Baker(self.files.source), BakedImages()
         self.known, self.of_objects, self.of_scales, self.interfaces = {}, set(), set(), set()
+        self.media_of_boxes = {}  # of what is the same in the same box
         self.count, self.owner = 0, Owner()
 
     def variants(self, material, place=None, surface_of=lambda material_name: Surface(), owner=Owner()):
@@ -185,13 +186,22 @@ class MaterialExporter(SumExporter):
         def tell(text):
             self.warn(f"material '{self.name}': {text}")
 
+        space, owner = self.surface.space_of and self.surface.space_of(), self.baker.owner
+        key = self.name, self.baker.ray, owner and owner.key(), space and space.key()
+        if key in self.media_of_boxes:
+            self.hangs_on_object = True
+            return self.media_of_boxes[key]
         try:
-            found = medium_of(node, self.surface.space_of and self.surface.space_of(), self.files.source, self.baker.ray, self.baker.owner, tell)
+            found, asked = medium_of(node, space, self.files.source, self.baker.ray, owner, tell)
         except Unsupported as problem:
             tell(f"its volume is not supported and left out ({problem})")
             return ""
-        self.hangs_on_object |= isinstance(found, VaryingMedium)
-        return self.media.add(found)
+        name = self.media.add(found)
+        if asked:
+            self.hangs_on_object = True  # even where what it asked for is not known: elsewhere it may be
+            if "WORLD" not in asked:
+                self.media_of_boxes[key] = name
+        return name
 
     def _shader(self, node):
         known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled,

@@ -17,7 +17,7 @@ from .displacement import Displacer
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_points import Spheres, spheres
-from .export_volumes import has_volume
+from .export_volumes import Varying, has_volume
 from .media import Volumes
 from .node_signature import hangs_on_world
 from .owner import Owner, asks_for_random, random_of
@@ -97,8 +97,7 @@ class SceneExporter:
         time = self.frame if self.shutter is None else self.frame + self.shutter[0]
         # A layer without sky has no light of it, either, as in Cycles.
         world = (getattr(self.layer, "world_override", None) or self.scene.world) if self.layer.use_sky else None
-        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time,
-                                 self.is_preview)
+        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview)
 
     # -- time
 
@@ -147,7 +146,7 @@ class SceneExporter:
         for _, instance in self._instances():
             obj = instance.object
             slots = [slot for slot, material in enumerate(self._materials(obj)) if has_volume(material)] \
-                if obj.type == "MESH" and instance.show_self and self.layer.use_solid else []
+                if obj.type == "MESH" and instance.show_self and self.layer.use_solid and Body.is_of(obj.data) else []
             hidden = self.visibility.hidden(instance) if slots else None
             if hidden is None:
                 continue
@@ -316,12 +315,12 @@ class SceneExporter:
             return found
 
         def surface_of(name):
-            has_body = mesh and Body.is_of(mesh)
-            return Surface(self.uv_ranges.of(name), *((body, export_meshes.active_uv_map(mesh), space) if has_body else ()))
+            of_body = (body, export_meshes.active_uv_map(mesh), space) if mesh and Body.is_of(mesh) else ()
+            return Surface(self.uv_ranges.of(name), *of_body)
 
         def space():
             places = export_meshes.positions(mesh)
-            return VolumeSpace(places.min(0), places.max(0), texture_space(mesh), self.placements.only_matrix(obj), is_preview=self.is_preview)
+            return VolumeSpace(places.min(0), places.max(0), texture_space(mesh), self.placements.only_matrix(obj), most=self.most_places)
 
         owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
         return self.materials.variants(material, (*Placements.key(obj), mesh is None, self.random), surface_of, owner)
@@ -361,14 +360,17 @@ class SceneExporter:
                       f"{most / 1e6:.0f}; all are {1 / self.placements.share:.1f} times as coarse")
 
     def _look_at_instances(self):
-        self.uv_ranges = UvRanges()
+        self.uv_ranges, varying = UvRanges(), Varying()
         self.placements = Placements(None if self.is_preview else self.camera)
         for _, instance in self._instances():
             obj = instance.object
             if obj.type in WRITTEN:
                 self.placements.add(instance)
             if obj.type == "MESH":
-                self.uv_ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
+                materials = {m.name_full: m for m in self._materials(obj) if m}
+                self.uv_ranges.add(obj.data, set(materials))
+                varying.add(materials)
+        self.most_places = varying.most_places(self.is_preview)
 
     def _parts(self, variants, positions, normals, uvs, triangles, motion=None, tangents=None, tube_sides=0):
         file = f"mesh{len(os.listdir(self.folder))}.ply"

@@ -11,11 +11,12 @@ from .shader_nodes.evaluator import Evaluator
 from .shader_nodes.flat import flat_output
 from .shader_nodes.place import VolumePlace
 from .shader_nodes.unsupported import Unsupported
-from .volume_lattice import PROBES, lattice_for
+from .volume_lattice import PROBES, lattice_for, most_of_each
 
 STEFAN_BOLTZMANN = 5.670373e-14 / math.pi  # of Cycles' blackbodies in volumes, by the fourth power of the temperature
 
 UNEVEN = 0.05  # of a colour's channel: what is less is hardly seen
+COARSE = 0.12  # of the mean: three times the error that a lattice is to have
 
 
 class _Sockets:
@@ -46,7 +47,7 @@ class _Sockets:
 
 
 def _times(colour, number):
-    return colour * number[..., None]
+    return colour.astype(float) * number[..., None]  # which may be as large as there are numbers of single precision
 
 
 def _light_of_principled(node, sockets):
@@ -94,8 +95,8 @@ def coefficients(node, sockets):
 
 
 def medium_of(node, space, pixels_of, ray, owner, tell):
-    """The Coefficients or the VaryingMedium of a volume shader's node in a VolumeSpace; None: in no place that is known. pixels_of, ray,
-    owner: as places of nodes have them. tell(text): what is left out. Raises Unsupported."""
+    """(the Coefficients or the VaryingMedium of a volume shader's node in a VolumeSpace, the kinds of coordinates that it hangs on); None:
+    in no place that is known. pixels_of, ray, owner: as places of nodes have them. tell(text): what is left out. Raises Unsupported."""
     told = set()
 
     def at(places):
@@ -108,12 +109,15 @@ def medium_of(node, space, pixels_of, ray, owner, tell):
         def values_at(places):
             return at(places)[0].values(len(places))
 
-        lattice = lattice_for(space, values_at)
+        lattice, error = lattice_for(space, values_at)
         found = Coefficients.of_values(lattice.sampled(values_at))
         _tell_of_colours(found, told.add)
+        if error > COARSE:
+            told.add(f"its volume varies between the places of its grid by {100 * error:.0f} % of its mean in the mean, which it has "
+                     f"{' x '.join(map(str, lattice.shape))} of")
     for text in sorted(told):
         tell(text)
-    return found if place.is_uniform else VaryingMedium(found, lattice)
+    return found if place.is_uniform else VaryingMedium(found, lattice), place.asked
 
 
 def _tell_of_colours(found, tell):
@@ -129,7 +133,44 @@ def _tell_of_colours(found, tell):
         tell("the anisotropy of its volume varies; all of it has the mean")
 
 
+def _volume(material):
+    output = flat_output(material.node_tree) if material and material.use_nodes and material.node_tree else None
+    return output and output.inputs["Volume"]
+
+
 def has_volume(material):
     """Whether a material has a volume, supported or not."""
-    output = flat_output(material.node_tree) if material and material.use_nodes and material.node_tree else None
-    return output is not None and output.inputs["Volume"].is_linked
+    volume = _volume(material)
+    return volume is not None and volume.is_linked
+
+
+def _may_vary(material):
+    """Whether a material has a volume that may hang on the place."""
+    volume = _volume(material)
+    waiting, seen = [volume] if volume else [], set()
+    while waiting:
+        for node in [link.from_node for link in waiting.pop().links]:
+            if node.type.startswith("TEX_") or node.type == "NEW_GEOMETRY":
+                return True
+            if node.path not in seen:
+                seen.add(node.path)
+                waiting += node.inputs
+    return False
+
+
+class Varying:
+    """Counts the instances whose volumes may hang on the place."""
+
+    def __init__(self):
+        self._known, self._count = {}, 0
+
+    def add(self, materials):
+        """An instance of these, by their names."""
+        for name, material in materials.items():
+            if name not in self._known:
+                self._known[name] = _may_vary(material)
+        self._count += any(self._known[name] for name in materials)
+
+    def most_places(self, is_preview):
+        """Of the lattice of each."""
+        return most_of_each(self._count, is_preview)

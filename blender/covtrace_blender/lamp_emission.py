@@ -62,7 +62,7 @@ class LampEmission:
             first, second = (self._emitted(part) for part in shader.inputs[-2:])
             if shader.type == "ADD_SHADER":
                 return first + second
-            share = min(max(float(np.mean(self._number(shader.inputs[0]))), 0), 1)
+            share = np.clip(np.asarray(self._number(shader.inputs[0]), float), 0, 1)[..., None]
             return (1 - share) * first + share * second
         if shader.type != "EMISSION":
             if shader.type.startswith("BSDF_"):

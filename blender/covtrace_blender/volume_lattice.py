@@ -9,6 +9,8 @@ from .parts import PART, by_parts
 # Places of a lattice: from 16 along each side of a cube to 128, in viewports 64. The finest takes a second for each octave of a noise,
 # and 10 MB of a file, 40 where it shines; Cycles takes ten steps through a box.
 FEWEST, MOST, MOST_OF_PREVIEWS = 1 << 12, 1 << 21, 1 << 18
+SHARED = 8  # lattices of the finest kind that all of a scene may have together, as each instance has one in its file
+WITH_BORDER = 1.1  # times as many places has the finest lattice of a cube with those beyond its sides
 FINER = 8  # times as many places in the next finer one
 PROBES = 2048
 # Mean error between places, of the mean, at which a finer lattice is not worth its memory. Errors of both signs cancel along rays: of three
@@ -16,14 +18,24 @@ PROBES = 2048
 TOLERANCE = 0.04
 
 
+def most_of_each(count, is_preview):
+    """The most places that the lattice of each of `count` instances may have."""
+    most = MOST_OF_PREVIEWS if is_preview else MOST
+    return max(FEWEST, min(most, SHARED * most // max(count, 1)))
+
+
 class VolumeSpace:
     """The box that a volume fills, in its object's space: low and high are its corners. texture_space: (least corner, size) of Generated
     coordinates. matrix: 4x4 to the world; None where there is none that is the only one. grids: {name of an attribute: function of (n, 3)
-    places to (n, 3)}. is_preview: whether lattices are coarse."""
+    places to (n, 3)}. most: places of a lattice."""
 
-    def __init__(self, low, high, texture_space, matrix=None, grids=None, is_preview=False):
+    def __init__(self, low, high, texture_space, matrix=None, grids=None, most=MOST):
         self.low, self.high, self.texture_space = np.array(low, float), np.array(high, float), texture_space
-        self.matrix, self.grids, self.most = matrix, grids or {}, MOST_OF_PREVIEWS if is_preview else MOST
+        self.matrix, self.grids, self.most = matrix, grids or {}, most
+
+    def key(self):
+        """Equal for spaces in which all is alike but the world."""
+        return (*self.low, *self.high, *(tuple(part) for part in self.texture_space), self.most)
 
     def random_places(self, count):
         return (self.low + np.random.default_rng(0).random((count, 3)) * (self.high - self.low)).astype(np.float32)
@@ -75,18 +87,22 @@ class Lattice:
 
 
 def lattice_for(space, values_at):
-    """The coarsest Lattice of a VolumeSpace between whose places `values_at((n, 3) places)` hardly differs from what is linear."""
+    """(the coarsest Lattice of a VolumeSpace between whose places `values_at((n, 3) places)` hardly differs from what is linear, or the finest
+    that it may have; the mean error between its places as a share of the mean)."""
     probes = space.random_places(PROBES)
     exact = values_at(probes)
-    count = FEWEST
+    mean = np.maximum(np.abs(exact).mean(0), 1e-30)
+    count, lattice = FEWEST, Lattice(space.low, space.high, FEWEST)
     while True:
-        lattice = Lattice(space.low, space.high, count)
 
         def values_of(numbers):
             z, y, x = np.unravel_index(numbers, lattice.shape[::-1])
             return values_at((lattice.low + (np.column_stack((x, y, z)) + 0.5) * lattice.cell).astype(np.float32))
 
-        error = np.abs(lattice.interpolated(probes, values_of) - exact).mean(0)
-        if count >= space.most or (error <= TOLERANCE * np.abs(exact).mean(0)).all():
-            return lattice
+        error = float((np.abs(lattice.interpolated(probes, values_of) - exact).mean(0) / mean).max())
         count *= FINER
+        finer = Lattice(space.low, space.high, count)
+        # Flat and thin boxes have most of their places beyond their sides.
+        if error <= TOLERANCE or count > space.most or finer.count() > WITH_BORDER * space.most:
+            return lattice, error
+        lattice = finer

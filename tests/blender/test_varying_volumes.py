@@ -1,8 +1,11 @@
 """Volumes that nodes vary from place to place, against Cycles."""
 
+from unittest import mock
+
 import bpy
 import test_volumes
 from addon_support import BlenderTest, material, mean, render
+from covtrace_blender import volume_lattice
 
 
 class VaryingVolumesTest(BlenderTest):
@@ -109,3 +112,45 @@ class VaryingVolumesTest(BlenderTest):
         self.link(m, coordinates.outputs["Generated"], self.shader(m).inputs["Color"])
         self.export()
         self.assertEqual(self.warnings, ["material 'filled': the colour of its volume varies; all of it has the mean colour"])
+
+    def test_numbers_without_bound_are_written_as_numbers(self):
+        m = self.bank()
+        shader, power = self.shader(m), self.node(m, "Math", operation="POWER")
+        power.inputs[1].default_value = -900
+        self.link(m, self.noise(m), power.inputs[0], power.outputs[0], shader.inputs["Density"])
+        text = self.export()
+        self.assertIn('"uniformgrid"', text)
+        self.assertNotIn("nan", text)
+        self.assertNotIn("inf ", text)
+
+    def test_what_is_nowhere_leaves_the_others_as_they_are(self):
+        """A mesh without faces has the same material before the others."""
+        m = self.bank()
+        filled = bpy.context.object
+        empty = bpy.data.objects.new("empty", bpy.data.meshes.new("empty"))
+        empty.data.materials.append(m)
+        for collection in filled.users_collection:
+            collection.objects.unlink(filled)
+        for thing in (empty, filled):
+            self.scene.collection.objects.link(thing)
+        self.assertIn('"uniformgrid"', self.export())
+        self.assertEqual(self.warnings, [])
+
+    def test_many_share_the_places_of_lattices(self):
+        """Each instance has a lattice in the file."""
+        self.bank(size=(2, 2, 2))
+        one = self.export()
+        other = bpy.context.object.copy()
+        other.location.x = 5
+        self.scene.collection.objects.link(other)
+        with mock.patch.object(volume_lattice, "SHARED", 1 / 256):
+            two = self.export()
+        self.assertLess(len(two), 0.6 * len(one))
+        self.assertEqual(two.count('"uniformgrid"'), 2)
+        self.assertTrue(any("varies between the places of its grid" in w for w in self.warnings), self.warnings)
+
+    def test_thin_boxes_have_no_more_places_than_cubes(self):
+        """Each side has places beyond it."""
+        self.bank(size=(400, 0.01, 0.01))
+        with mock.patch.object(volume_lattice, "MOST", 1 << 15):
+            self.assertLess(len(self.export()), 6 * 36000 + 5000)

@@ -58,11 +58,12 @@ class UvPlace(_Place):
 
 
 class VolumePlace(_Place):
-    """(n, 3) places within `space`, which has `texture_space`, `matrix` and `grids` as VolumeSpace has them; None: anywhere."""
+    """(n, 3) places within `space`, which has `texture_space`, `matrix` and `grids` as VolumeSpace has them; None: anywhere. asked: the
+    kinds of coordinates that nodes have asked for, those that are not known among them."""
 
     def __init__(self, space, places, pixels_of, ray=None, owner=None):
         super().__init__(pixels_of, ray, owner)
-        self._space, self._places, self.is_uniform = space, places, True
+        self._space, self._places, self.is_uniform, self.asked = space, places, True, set()
 
     def cosine(self):
         return np.float32(1)  # as in Cycles, which takes the direction of sight for the normal
@@ -75,6 +76,7 @@ class VolumePlace(_Place):
         if not self._space or name not in self._space.grids:
             return None
         self.is_uniform = False
+        self.asked.add("GRID")
         return self._space.grids[name](self._places)
 
     def attribute(self, node, name, part, missing):
@@ -84,6 +86,7 @@ class VolumePlace(_Place):
     def coordinates(self, node, kind):
         if kind not in ("OBJECT", "GENERATED", "WORLD"):
             raise Unsupported(node, f"volumes have no {kind.lower()}")
+        self.asked.add(kind)
         if not self._space or kind == "WORLD" and self._space.matrix is None:
             raise Unsupported(node, "the world's coordinates are not known of what has instances" if self._space else "its place is not known")
         self.is_uniform = False
