@@ -38,8 +38,8 @@ class Coefficients:
 
     @staticmethod
     def of_values(values):
-        """Coefficients again, of the rows that `values` gives."""
-        return Coefficients(values[:, :3], values[:, 3:6], values[:, 9], values[:, 6:9])
+        """Coefficients again, of the rows that `values` gives, or of one."""
+        return Coefficients(values[..., :3], values[..., 3:6], values[..., 9], values[..., 6:9])
 
     def text(self):
         """Parameters of pbrt's homogeneous medium."""

@@ -25,7 +25,7 @@ def write_lamp(out, lamp, matrix, end, hidden, images, warn):
     if lamp.type == "SPOT" and bpy.app.version < (4, 0, 0):  # Cycles 3.4 takes nothing of a spot's scale, 4.5 does
         scale = [1.0, 1.0, 1.0]
     has_radius = lamp.type in ("POINT", "SPOT") and (lamp.shadow_soft_size > 0 or end is not None)
-    for colour, image in LampEmission(lamp, images, _directions(lamp, scale, has_radius), warn).read():
+    for colour, image in images.emission(LampEmission(lamp, images, _directions(lamp, scale, has_radius), warn)):
         _write_light(out, lamp, matrix, end, hidden, images, [c * shaded for c, shaded in zip(_power(lamp), colour)], image, scale, has_radius)
 
 
@@ -33,7 +33,7 @@ def _write_light(out, lamp, matrix, end, hidden, images, colour, image, scale, h
     """One light of a lamp: watts per channel, and the image of LampEmission; scale: of its object, as far as it counts; has_radius: whether
     it is a ball."""
     is_spot = lamp.type == "SPOT"
-    if max(colour) <= 0:
+    if max(colour) <= 0 or lamp.type == "AREA" and _area(_corners(lamp)) == 0:
         return
     if lamp.type == "AREA" and image is not None:  # which has its colour in the image
         colour, image = [max(colour)] * 3, image * (np.array(colour) / max(colour))

@@ -117,7 +117,8 @@ def medium_of(node, space, pixels_of, ray, owner, tell):
                      f"{' x '.join(map(str, lattice.shape))} of")
     for text in sorted(told):
         tell(text)
-    return found if place.is_uniform else VaryingMedium(found, lattice), place.asked
+    # What is missing, as an attribute, is given for each place.
+    return Coefficients.of_values(found.values()[0]) if place.is_uniform else VaryingMedium(found, lattice), place.asked
 
 
 def _tell_of_colours(found, tell):

@@ -30,6 +30,10 @@ class LampEmission:
     def __init__(self, lamp, images, directions, warn):
         self.lamp, self.images, self.directions, self.warn = lamp, images, directions, warn
 
+    def key(self):
+        """Equal for lamps that `read` finds alike."""
+        return self.lamp.name_full, None if self.directions is None else np.asarray(self.directions, float).tobytes()
+
     def read(self):
         """The lights whose sum it is: [(the colour by which the nodes multiply the lamp's power, an image (h, w) over directions that
         multiplies it, (h, w, 3) over the UV map of area lamps, or None)]."""

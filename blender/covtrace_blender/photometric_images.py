@@ -14,7 +14,7 @@ class PhotometricImages:
 
     def __init__(self, folder, source=None):
         """source: pixels of images, as TextureFiles has it."""
-        self.folder, self.source, self._profiles, self._images, self._files = folder, source, {}, {}, {}
+        self.folder, self.source, self._profiles, self._images, self._files, self._emissions = folder, source, {}, {}, {}, {}
 
     def of(self, text, directions):
         """The intensity that a file's text has in directions: for a matrix (3, 3) the image that it makes, for a vector one number. Raises
@@ -29,6 +29,13 @@ class PhotometricImages:
         if key not in self._images:
             self._images[key] = profile.image(directions)
         return self._images[key]
+
+    def emission(self, lamp):
+        """What a LampEmission reads."""
+        key = lamp.key()
+        if key not in self._emissions:
+            self._emissions[key] = lamp.read()
+        return self._emissions[key]
 
     def write(self, image):
         """The name of the file that holds an image, (h, w) or (h, w, 3)."""

@@ -1,9 +1,11 @@
 """Patterns on lamps, against Cycles."""
 
 import unittest
+from unittest import mock
 
 import bpy
 from addon_support import CyclesTest
+from covtrace_blender.lamp_emission import LampEmission
 
 
 class LampPatternsTest(CyclesTest):
@@ -70,3 +72,27 @@ class LampPatternsTest(CyclesTest):
         self.patterned("AREA", "UV", self.picture, energy=100, size=2, location=(0, 0, 1))
         self.export()
         self.assertTrue(any("is not supported; the socket's own value is used" in w for w in self.warnings), self.warnings)
+
+    def test_lamps_without_extent_are_dark(self):
+        self.patterned("AREA", "UV", self.picture, energy=100, shape="RECTANGLE", size=2, size_y=0)
+        self.assertNotIn("AreaLightSource", self.export())
+
+    @unittest.skipIf(bpy.app.version < (4, 0), "Blender before 4.0")
+    def test_mixtures_have_a_pattern(self):
+        lamp = self.patterned("AREA", "UV", self.picture, energy=100, size=2, location=(0.3, 0, 1))
+        tree = lamp.node_tree
+        places, gradient, mix = (self.node(tree, kind) for kind in ("TexCoord", "TexGradient", "MixShader"))
+        tree.links.new(places.outputs["UV"], gradient.inputs["Vector"])
+        tree.links.new(gradient.outputs["Fac"], mix.inputs[0])
+        tree.links.new(tree.nodes["Emission"].outputs[0], mix.inputs[1])
+        tree.links.new(mix.outputs[0], next(n for n in tree.nodes if n.type == "OUTPUT_LIGHT").inputs[0])
+        self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=128)
+
+    @unittest.skipIf(bpy.app.version < (4, 0), "Blender before 4.0")
+    def test_a_pattern_that_many_lamps_have_is_evaluated_once(self):
+        lamp = self.patterned("POINT", "UV", self.picture, energy=100)
+        for x in range(3):
+            self.scene.collection.objects.link(bpy.data.objects.new("other", lamp))
+        with mock.patch.object(LampEmission, "read", autospec=True, side_effect=LampEmission.read) as read:
+            self.assertEqual(self.export().count(".pfm"), 12)  # three lights each
+        self.assertEqual(read.call_count, 1)

@@ -123,6 +123,12 @@ class VaryingVolumesTest(BlenderTest):
         self.assertNotIn("nan", text)
         self.assertNotIn("inf ", text)
 
+    def test_attributes_that_are_missing_leave_a_volume_even(self):
+        m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
+        missing = self.node(m, "Attribute", attribute_name="missing")
+        self.link(m, missing.outputs["Color"], self.shader(m).inputs["Color"], missing.outputs["Fac"], self.shader(m).inputs["Anisotropy"])
+        self.assertIn('"rgb sigma_s" [0 0 0] "rgb sigma_a" [0 0 0] "float g" 0\n', self.export())
+
     def test_what_is_nowhere_leaves_the_others_as_they_are(self):
         """A mesh without faces has the same material before the others."""
         m = self.bank()
