@@ -7,6 +7,7 @@ from .atlases import digest
 from .charts import face_normals
 
 
+UNDISPLACED = "covtrace_undisplaced"  # attribute of displaced meshes
 LEAST_EXTENT = 1e-30  # determinant of an object's matrix below which it has no extent in some direction
 
 
@@ -18,10 +19,21 @@ def texture_space(mesh):
 
 
 def undeformed(mesh):
-    """(n, 3) places of the vertices before modifiers moved them, as far as the mesh knows."""
+    """(n, 3) places of the vertices before modifiers and displacement moved them, as far as the mesh knows."""
     values = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("undeformed_co", values)
+    if UNDISPLACED in mesh.attributes:
+        mesh.attributes[UNDISPLACED].data.foreach_get("vector", values)
+    else:
+        mesh.vertices.foreach_get("undeformed_co", values)
     return values.reshape(-1, 3)
+
+
+def keep_undeformed(mesh):
+    """Before the vertices of a mesh, which is no one else's, are moved: Blender has their places now for those from before modifiers
+    where there are none."""
+    values = undeformed(mesh)
+    mesh.attributes.new(UNDISPLACED, "FLOAT_VECTOR", "POINT")
+    mesh.attributes[UNDISPLACED].data.foreach_set("vector", values.ravel())
 
 
 def corner_normals(mesh, positions, triangles, loops):

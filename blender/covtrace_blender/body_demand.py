@@ -130,11 +130,15 @@ class BodyDemand:
         margins = len(WAYS) * (2 * MARGIN + 1) ** 2
         return float((images * np.minimum(wanted * share**2 + margins, self._most_of_one)).sum())
 
-    def share_of_density(self, most):
+    def share_of_density(self, most, warn):
         """The factor by which densities are lowered, so that there are `most` texels or fewer: a power of the root of 2, so that small moves
-        change nothing."""
+        change nothing. warn(text): is told where they are."""
         shares = (2.0 ** (-step / 2) for step in range(MOST_STEPS))
-        return next((share for share in shares if self.texels(share) <= most), 2.0 ** (-MOST_STEPS / 2))
+        share = next((share for share in shares if self.texels(share) <= most), 2.0 ** (-MOST_STEPS / 2))
+        if share < 1:
+            warn(f"the patterns on all objects would have about {self.texels() / 1e6:.0f} million texels, of which there are at most "
+                 f"{most / 1e6:.0f}; all are {1 / share:.1f} times as coarse")
+        return share
 
 
 def texels_wanted(corners, density):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import attributes, export_meshes, islands
-from .body import Body, corner_normals
+from .body import Body, corner_normals, keep_undeformed
 from .shader_nodes.evaluator import evaluated
 from .shader_nodes.flat import flat_output
 from .shader_nodes.place import BodyPlace
@@ -73,6 +73,7 @@ class Displacer:
         for material, chosen in chosen_of.items():
             turned |= chosen & (method_of(material) == "BOTH")
         kept = (turned, corner_normals(mesh, places, triangles, export_meshes.triangle_loops(mesh))) if turned.any() else None
+        keep_undeformed(mesh)
         export_meshes.reshape(mesh, (places + moves).astype(np.float32))
         return kept
 

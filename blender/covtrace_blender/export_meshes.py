@@ -11,6 +11,12 @@ def positions(mesh):
     return values.reshape(-1, 3)
 
 
+def box(mesh):
+    """(low, high) corners of the box around the vertices of a mesh, which has some."""
+    places = positions(mesh)
+    return places.min(0), places.max(0)
+
+
 def reshape(mesh, places):
     """Moves the vertices of a mesh to (n, 3) places, where it has as many."""
     if len(places) == len(mesh.vertices):

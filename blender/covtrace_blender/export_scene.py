@@ -13,7 +13,7 @@ from .baking import Surface
 from .body import Body, texture_space
 from .body_demand import MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS, BodyDemand
 from .clipping import Clipping
-from .displacement import Displacer
+from .displacement import Displacer, method_of
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_points import Spheres, spheres
@@ -150,13 +150,15 @@ class SceneExporter:
             hidden = self.visibility.hidden(instance) if slots else None
             if hidden is None:
                 continue
-            self.random = self._random_of(instance) if slots else None
+            self.random, mesh = self._random_of(instance), obj.to_mesh()
+            self._displace(obj, mesh)
             for slot in slots:
-                filled = [v for v in self._variants(obj, slot, obj.data) if v.medium and set(v.rays) - hidden]
+                filled = [v for v in self._variants(obj, slot, mesh) if v.medium and set(v.rays) - hidden]
                 if filled:
                     rays = {ray for variant in filled for ray in variant.rays} - hidden
-                    found.add(obj, instance.matrix_world, self.materials.media.placed(filled[0].medium, instance.matrix_world), rays)
+                    found.add(obj, mesh, instance.matrix_world, self.materials.media.placed(filled[0].medium, instance.matrix_world), rays)
                     break
+            obj.to_mesh_clear()
         return found
 
     def _write_objects(self, moving):
@@ -319,8 +321,7 @@ class SceneExporter:
             return Surface(self.uv_ranges.of(name), *of_body)
 
         def space():
-            places = export_meshes.positions(mesh)
-            return VolumeSpace(places.min(0), places.max(0), texture_space(mesh), self.placements.only_matrix(obj), most=self.most_places)
+            return VolumeSpace(*export_meshes.box(mesh), texture_space(mesh), self.placements.only_matrix(obj), most=self.most_places)
 
         owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
         return self.materials.variants(material, (*Placements.key(obj), mesh is None, self.random), surface_of, owner)
@@ -348,16 +349,15 @@ class SceneExporter:
             mesh = obj.to_mesh() if any(count for count, _ in images.values()) else None
             if mesh is None:
                 continue
+            if all(method_of(material) != "BOTH" for material in images):
+                self._displace(obj, mesh)  # colours hang on where the surface is; heights over one that is moved on where it was
             for material, (count, kinds) in images.items() if Body.is_of(mesh) else ():
                 if count and export_meshes.triangles_of(mesh, self._materials(obj), material).any():
                     body = self._body(obj, mesh, material)
                     demand.add(material, count, kinds, body, self.placements.density(obj, mesh)[body.chosen])
             obj.to_mesh_clear()
         most = MOST_TEXELS_OF_PREVIEWS if self.is_preview else MOST_TEXELS
-        self.placements.share = demand.share_of_density(most)
-        if self.placements.share < 1:
-            self.warn(f"the patterns on all objects would have about {demand.texels() / 1e6:.0f} million texels, of which there are at most "
-                      f"{most / 1e6:.0f}; all are {1 / self.placements.share:.1f} times as coarse")
+        self.placements.share = demand.share_of_density(most, self.warn)
 
     def _look_at_instances(self):
         self.uv_ranges, varying = UvRanges(), Varying()

@@ -99,14 +99,14 @@ class Volumes:
     def __init__(self):
         self._solids, self._bodies, self._inverses = {}, [], []
 
-    def add(self, obj, matrix, medium, rays):
-        """rays: the kinds that see it."""
-        if abs(matrix.determinant()) < 1e-30 or not obj.data.polygons:
+    def add(self, obj, mesh, matrix, medium, rays):
+        """mesh: of the object, which instances share, as it is rendered; rays: the kinds that see it."""
+        if abs(matrix.determinant()) < 1e-30 or not mesh.polygons:
             return
-        mesh = obj.data.as_pointer()
-        if mesh not in self._solids:
-            self._solids[mesh] = Solid(obj.data)
-        self._bodies.append((obj.name_full, self._solids[mesh], medium, set(rays)))
+        key = obj.data.as_pointer()
+        if key not in self._solids:
+            self._solids[key] = Solid(mesh)
+        self._bodies.append((obj.name_full, self._solids[key], medium, set(rays)))
         self._inverses.append(np.array(matrix.inverted()))
 
     @functools.cached_property

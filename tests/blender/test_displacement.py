@@ -58,3 +58,36 @@ class DisplacementTest(CyclesTest):
         for polygon in grid.data.polygons:
             polygon.use_smooth, polygon.material_index = False, int(polygon.center.x > 0)
         self.assert_parts_as_cycles(0.05, 64, samples_of_cycles=64)
+
+    def lifted(self, kind, distance):
+        """A material whose constant Displacement along the normals moves all vertices by a distance, and a shader of it."""
+        m = self.shader(kind)
+        tree = m.node_tree
+        (m if hasattr(m, "displacement_method") else m.cycles).displacement_method = "DISPLACEMENT"
+        moves = self.node(tree, "Displacement", Height=distance, Midlevel=0.0, Scale=1.0)
+        tree.links.new(moves.outputs[0], tree.nodes["Material Output"].inputs["Displacement"])
+        return m, tree
+
+    def test_colours_hang_on_where_vertices_are_moved_to(self):
+        """Generated coordinates on where they were."""
+        self.lamp("SUN", energy=3)
+        for output in ("Object", "Generated"):
+            m, tree = self.lifted("BsdfDiffuse", 0.7)
+            coordinates, axes = self.node(tree, "TexCoord"), self.node(tree, "SeparateXYZ")
+            tree.links.new(coordinates.outputs[output], axes.inputs[0])
+            tree.links.new(axes.outputs["Z"], next(n for n in tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
+            plane = self.thing("plane", m, size=3)
+            self.assert_as_cycles(0.02, 16)
+            bpy.data.objects.remove(plane)
+
+    def test_volumes_fill_what_is_moved(self):
+        m, tree = self.lifted("Emission", 0.5)
+        light = next(n for n in tree.nodes if n.type == "EMISSION")
+        tree.links.new(light.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
+        tree.links.remove(tree.nodes["Material Output"].inputs["Surface"].links[0])
+        coordinates, gradient = self.node(tree, "TexCoord"), self.node(tree, "TexGradient")
+        tree.links.new(coordinates.outputs["Generated"], gradient.inputs["Vector"])
+        tree.links.new(gradient.outputs["Fac"], light.inputs["Strength"])
+        self.thing("uv_sphere", m, radius=0.6)
+        bpy.ops.object.shade_smooth()
+        self.assert_as_cycles(0.03, 32)
