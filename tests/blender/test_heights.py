@@ -53,7 +53,7 @@ class HeightsTest(NodeTilesTest):
         """In one file for all scales, and one material for what is only turned."""
         tree = Tree("heights")
         height = tree.node("Math", {"operation": "SINE"}, {0: tree.number()})
-        tree.link(tree.node("Displacement", {}, {"Height": height}), 0, tree.tree.nodes["Material Output"].inputs["Displacement"])
+        tree.link(tree.node("Displacement", {}, {"Height": height, "Scale": 1.0}), 0, tree.tree.nodes["Material Output"].inputs["Displacement"])
         for number, (turn, scale) in enumerate(((0, 1), (0.4, 1), (1.3, 1), (0, 2), (0, 3))):
             plane = self.tile(number, tree.material)
             plane.rotation_euler, plane.scale = (turn, 2 * turn, 3 * turn), (scale,) * 3
