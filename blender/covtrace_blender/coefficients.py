@@ -7,7 +7,7 @@ from .export_shaders import numbers
 # Absorption per unit of length of what shines: pbrt's media shine by as much as they absorb. A hundred units dim by a thousandth.
 LEAST_ABSORPTION = 1e-5
 
-# Of all that is per unit of length: nodes may give any number, and products of two of these are finite in single precision.
+# The largest coefficient: nodes may give any number, and products of two of this size are finite in single precision.
 MOST = 1e15
 
 

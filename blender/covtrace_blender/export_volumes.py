@@ -117,7 +117,7 @@ def medium_of(node, space, pixels_of, ray, owner, tell):
                      f"{' x '.join(map(str, lattice.shape))} of")
     for text in sorted(told):
         tell(text)
-    # What is missing, as an attribute, is given for each place.
+    # Rows of an even medium are alike; missing attributes make one for each place.
     return Coefficients.of_values(found.values()[0]) if place.is_uniform else VaryingMedium(found, lattice), place.asked
 
 
@@ -173,5 +173,5 @@ class Varying:
         self._count += any(self._known[name] for name in materials)
 
     def most_places(self, is_preview):
-        """Of the lattice of each."""
+        """The most places that the lattice of one instance may have."""
         return most_of_each(self._count, is_preview)

@@ -31,7 +31,7 @@ class PhotometricImages:
         return self._images[key]
 
     def emission(self, lamp):
-        """What a LampEmission reads."""
+        """The colour and image that a LampEmission reads, once for all lamps that are alike."""
         key = lamp.key()
         if key not in self._emissions:
             self._emissions[key] = lamp.read()
