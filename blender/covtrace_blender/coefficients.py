@@ -11,12 +11,17 @@ LEAST_ABSORPTION = 1e-5
 MOST = 1e15
 
 
+def _usable(values):
+    """Values that nodes gave; what is no number, as of infinity times 0, is 0."""
+    return np.nan_to_num(np.minimum(values, MOST)).astype(np.float32)
+
+
 class Coefficients:
     """Scattering and absorption of a medium per unit of length, and the radiance that it adds on that: (3,) in R, G, B, or (n, 3) at places;
     g: the mean cosine of scattering, () or (n,)."""
 
     def __init__(self, scattering=(0, 0, 0), absorption=(0, 0, 0), g=0.0, light=(0, 0, 0)):
-        self.scattering, self.absorption, self.light = (np.minimum(part, MOST).astype(np.float32) for part in (scattering, absorption, light))
+        self.scattering, self.absorption, self.light = (_usable(part) for part in (scattering, absorption, light))
         self.g = np.asarray(g, np.float32)
 
     def plus(self, other):

@@ -3,9 +3,11 @@
 from unittest import mock
 
 import bpy
+import numpy as np
 import test_volumes
 from addon_support import BlenderTest, material, mean, render
 from covtrace_blender import volume_lattice
+from covtrace_blender.coefficients import MOST, Coefficients
 
 
 class VaryingVolumesTest(BlenderTest):
@@ -122,6 +124,7 @@ class VaryingVolumesTest(BlenderTest):
         self.assertIn('"uniformgrid"', text)
         self.assertNotIn("nan", text)
         self.assertNotIn("inf ", text)
+        self.assertEqual(Coefficients((float("nan"), float("inf"), 2)).scattering.tolist(), [0, np.float32(MOST), 2])
 
     def test_attributes_that_are_missing_leave_a_volume_even(self):
         m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
