@@ -16,6 +16,9 @@ TRIANGLE = {
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
     "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
 }
+# The sine of the elevation in the middle of the first pixel, and the sky there and below the horizon in the last row
+SINE = 0.3073
+SKY, BELOW = 0.4 * (1.3 - 0.45 * SINE), 0.4 * (1.3 - 1.05 * SINE)
 
 
 class Defaults(CliTest):
@@ -31,14 +34,15 @@ class Defaults(CliTest):
         rows, warnings = self.lit(VIEW + BALL)
         self.assertEqual(len(warnings), 1, warnings)
         self.assertIn("no lights", warnings[0])
-        self.assertAlmostEqual(rows[0][0], 0.4, places=3)  # the sky
+        self.assertAlmostEqual(rows[0][0], SKY, places=3)
+        self.assertAlmostEqual(rows[15][0], BELOW, places=3)
         # The key comes from the upper left.
         self.assertGreater(rows[5][5], 1.5 * rows[10][10])
         self.assertLess(max(map(max, rows)), 0.6)
 
     def test_the_film_does_not_make_it_dark(self):
         rows, _ = self.lit(VIEW.replace('"float fov" 40', '"float fov" 40 "float shutterclose" 0.02') + BALL)
-        self.assertAlmostEqual(rows[0][0], 0.4, places=3)
+        self.assertAlmostEqual(rows[0][0], SKY, places=3)
 
     def test_any_light_of_the_file_counts(self):
         for light in (
@@ -58,7 +62,7 @@ class Defaults(CliTest):
         rows, _ = self.lit(VIEW + BALL, "--environment", "1")
         self.assertAlmostEqual(rows[0][0], 1, places=3)
         rows, warnings = self.lit(VIEW + BALL, "--environment-scale", "2")  # of the sky that stands in
-        self.assertAlmostEqual(rows[0][0], 0.8, places=3)
+        self.assertAlmostEqual(rows[0][0], 2 * SKY, places=3)
         self.assertIn("no lights", warnings[0])
 
     def test_a_scene_without_a_camera_is_seen_from_its_origin(self):
