@@ -120,7 +120,9 @@ def _area(corners):
 
 
 def _write_area(out, lamp, colour, hidden, file):
-    """file: of an image that multiplies the colour, the same in all channels then; or None. Shines along -z of its object, from one side, with the radiance W / (pi area); in Cycles 3.4 W / (4 area) (measured)."""
+    """file: of an image that multiplies the colour, the same in all channels then; or None.
+
+    Shines along -z of its object, from one side, with the radiance W / (pi area); in Cycles 3.4 W / (4 area) (measured)."""
     corners, grid, gain = _corners(lamp), "", 1
     width, height = (2 * max(abs(corner[axis]) for corner in corners) for axis in (0, 1))
     uvs = numbers(v for x, y in corners for v in (x / width + 0.5, y / height + 0.5))
