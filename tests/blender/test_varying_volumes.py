@@ -67,7 +67,8 @@ class VaryingVolumesTest(BlenderTest):
     def test_fog_of_noise(self):
         self.bank()
         self.point((1, 0, 2), 200)
-        self.assert_parts(0.08)  # of what the fog of a noise sends here, some hundredths are noise of both renders
+        # The same scene is 2 to 5 % darker in Cycles 3.4 than in 4.5
+        self.assert_parts(0.05 if bpy.app.version >= (4, 0) else 0.08)
         self.assertIn('"uniformgrid"', self.export())
         self.assertEqual(self.warnings, [])
 
