@@ -48,8 +48,10 @@ class DisplacementTest(CyclesTest):
 
     def test_heights_turn_normals_between_the_vertices(self):
         self.rock("BOTH", 20)
-        # Heights between the vertices are 6 % off in the mean, and more where light grazes
-        self.assert_parts_as_cycles(0.13, 64, samples_of_cycles=64)
+        # The same scene is darker in newer versions of Cycles, for a reason that was not found: in the mean 2 % below ours in 3.4, 6 % in 4.5
+        # and 8 % in 5.3
+        version = bpy.app.version
+        self.assert_parts_as_cycles(0.06 if version < (4, 0) else 0.09 if version < (5, 0) else 0.13, 64, samples_of_cycles=64)
         self.assertEqual(self.warnings_of_export(), [])
 
     def test_flat_faces_stay_flat_and_each_vertex_is_moved_once(self):
