@@ -34,34 +34,48 @@ ColorPlanes other_half(const ColorPlanes& half, const ColorPlanes& whole) {
     return other;
 }
 
+/// Denoises all samples in both sights, and the halves where they are to judge.
+Denoised denoised_twice(const Denoiser& denoiser, const NoisyFeatures& features,
+                        const Halves& halves, const ColorPlanes& all, bool judges) {
+    std::vector<NoisyImage> images{{.color = all}, {.color = all, .turned = true}};
+    if (judges)
+        for (const HalfBuffer& half : halves)
+            images.push_back({.color = half.color, .draft = true});
+    std::vector<ColorPlanes> results = denoiser.denoise(features, std::move(images));
+    Denoised clean;
+    clean.whole = std::move(results[0]);
+    combine_sights(clean.whole, clean.difference.emplace(std::move(results[1])));
+    for (size_t k = 0; k < 2; ++k) clean.half[k] = judges ? std::move(results[2 + k]) : clean.whole;
+    return clean;
+}
+
+/// Denoises one half and all samples.
+Denoised denoised_fast(const Denoiser& denoiser, const NoisyFeatures& features,
+                       const Halves& halves, const ColorPlanes& all) {
+    std::vector<ColorPlanes> results =
+        denoiser.denoise(features, {{.color = halves[0].color, .draft = true}, {.color = all}});
+    Denoised clean;
+    clean.half[0] = std::move(results[0]);
+    clean.whole = std::move(results[1]);
+    clean.half[1] = other_half(clean.half[0], clean.whole);
+    return clean;
+}
+
 }  // namespace
 
 std::optional<Denoised> denoised(const Denoiser* denoiser, DenoiserQuality quality,
                                  const Halves& halves, float few, std::string& failure) {
     if (!denoiser) return std::nullopt;
     // No samples have planned others up to 4 per pixel
-    const CountBy by = few >= 1 ? CountBy::samples : CountBy::halves;
+    const bool is_pilot = few >= 1;
+    const CountBy by = is_pilot ? CountBy::samples : CountBy::halves;
     const ColorPlanes all = mean_color(halves, by);
     const NoisyFeatures features{mean_features(halves, 0, by), mean_features(halves, 3, by),
                                  cleaning_of(quality, few)};
-    std::vector<NoisyImage> images{{.color = halves[0].color, .draft = true}, {.color = all}};
-    const bool is_high = quality == DenoiserQuality::high;
-    if (is_high) {
-        images.push_back({.color = all, .turned = true});
-        images.push_back({.color = halves[1].color, .draft = true});
-    }
     try {
-        std::vector<ColorPlanes> results = denoiser->denoise(features, std::move(images));
-        Denoised clean;
-        clean.half[0] = std::move(results[0]);
-        clean.whole = std::move(results[1]);
-        if (is_high) {
-            combine_sights(clean.whole, clean.difference.emplace(std::move(results[2])));
-            clean.half[1] = std::move(results[3]);
-        } else {
-            clean.half[1] = other_half(clean.half[0], clean.whole);
-        }
-        return clean;
+        return quality == DenoiserQuality::fast
+                   ? denoised_fast(*denoiser, features, halves, all)
+                   : denoised_twice(*denoiser, features, halves, all, !is_pilot);
     } catch (const Error& e) {
         failure = e.what();
         return std::nullopt;

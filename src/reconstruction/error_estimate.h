@@ -21,6 +21,10 @@ constexpr ErrorFactors kDenoisedError{1.03f, 5, 0.56f, 0.63f, 0.001f, 2.05f};
 /// Factors for images that are a denoiser's alone, of fast quality (docs/decisions/0147).
 constexpr ErrorFactors kFastDenoisedError{0.95f, 9, 0, 0.63f, 0, 0};
 
+/// Factors for images of few samples that are a denoiser's alone: what its two sights differ by
+/// tells their error, and halves of a sample or two nothing (docs/decisions/0157).
+constexpr ErrorFactors kFewDenoisedError{0, 0, 0, 0, 0, 32};
+
 /// Estimated squared errors over I^2 + 0.01, I the brightness.
 struct ErrorEstimate {
     Plane color;  ///< mean of the three channels, each over its own brightness

@@ -16,8 +16,10 @@ namespace covtrace {
 
 struct HybridSettings {
     CandidateSettings candidates;
-    /// Factors without a denoiser, and with one of either quality.
-    ErrorFactors error, error_denoised = kDenoisedError, error_fast = kFastDenoisedError;
+    /// Factors without a denoiser, with one, with one of fast quality, and with one for few
+    /// samples.
+    ErrorFactors error, error_denoised = kDenoisedError, error_fast = kFastDenoisedError,
+                        error_few = kFewDenoisedError;
     float sigma = 4;  ///< deviation of the neighbourhood that judges a first mixture, pixels
     LikenessSettings likeness;  ///< likeness of the pixels that judge the final mixture
     bool mix = true;            ///< false: the best single candidate, for comparisons

@@ -120,12 +120,14 @@ TEST(DenoiserBlend, AFewPixelsThatMissedTheLightAreTheDenoisers) {
     for (HalfBuffer& half : halves)
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x) {
-                half.count(x, y) = 2;
+                half.count(x, y) = 3;
                 const bool missed = std::abs(x - 32) <= 1 && std::abs(y - 32) <= 1;
-                const float seen = float(rng.next_float() < 0.5f) + float(rng.next_float() < 0.5f);
+                float lit = 0;
+                for (int i = 0; i < 3; ++i) lit += float(rng.next_float() < 0.5f);
+                const bool differ = !missed && lit != 0 && lit != 3;
                 for (size_t c = 0; c < 3; ++c) {
-                    half.color[c](x, y) = missed ? 0.02f : seen;
-                    half.color_variance[c](x, y) = missed || seen != 1 ? 0.25f : 0.75f;
+                    half.color[c](x, y) = missed ? 0.02f : 2 * lit / 3;
+                    half.color_variance[c](x, y) = differ ? 0.5f : 0.2f;
                 }
             }
     const HybridImage image = with(FixedDenoiser(constant(1)), halves);
@@ -152,6 +154,52 @@ TEST(DenoiserBlend, OneSamplePerPixelIsTheDenoisers) {
     // no half can judge it by the other one.
     for (size_t c = 0; c < 3; ++c) EXPECT_EQ(denoiser.seen.albedo[c].values, surface[c].values);
     for (const float share : image.share.back().values) ASSERT_EQ(share, 1);
+}
+
+/// Halves of a smooth image with as many samples in every pixel of each.
+Halves halves_of_samples(float of_each) {
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 45);
+    for (HalfBuffer& half : halves) half.count = Plane(kSize, kSize, of_each);
+    return halves;
+}
+
+TEST(DenoiserBlend, UpToFourSamplesTheImageIsTheDenoisersAlone) {
+    const AskedDenoiser denoiser;
+    const HybridImage four = with(denoiser, halves_of_samples(2));
+    EXPECT_EQ(denoiser.images_seen, 2u);  // all samples in two sights, and no half
+    EXPECT_EQ(mean_share(four), 1);
+    const HybridImage six = with(denoiser, halves_of_samples(3));
+    EXPECT_EQ(denoiser.images_seen, 4u);
+    EXPECT_EQ(six.share.size(), four.share.size());
+    EXPECT_LT(mean_share(six), 1);
+    // The samples of other renderers are not counted
+    HybridSettings settings;
+    settings.denoiser = &denoiser;
+    settings.noise = HalvesNoise::independent;
+    EXPECT_LT(mean_share(reconstruct(halves_of_samples(2), kSpectrum, settings)), 1);
+}
+
+TEST(DenoiserBlend, FewSamplesTellTheirErrorByTheSights) {
+    class SightsDiffer : public FixedDenoiser {
+      public:
+        SightsDiffer() : FixedDenoiser(constant(1)) {}
+        std::vector<ColorPlanes> denoise(const NoisyFeatures&,
+                                         std::vector<NoisyImage> images) const override {
+            std::vector<ColorPlanes> results;
+            for (const NoisyImage& image : images)
+                results.push_back(constant(image.turned ? 1.02f : 0.98f));
+            return results;
+        }
+    };
+    const auto one = [](int, int) { return 1.0f; };
+    Halves halves = noisy_halves(kSize, kSize, one, 0, 46);
+    for (const float count : {0.5f, 2.0f}) {
+        for (HalfBuffer& half : halves) half.count = Plane(kSize, kSize, count);
+        const HybridImage image = with(SightsDiffer(), halves);
+        const float squared = kFewDenoisedError.sights * sqr(0.02f);
+        EXPECT_NEAR(image.variance(20, 20), squared, 0.02f * squared);
+        EXPECT_NEAR(image.relative_error(20, 20), squared / 1.01f, 0.02f * squared);
+    }
 }
 
 TEST(DenoiserBlend, FeaturesOfFewSamplesAreNoDraft) {
