@@ -124,6 +124,20 @@ std::span<const float> cell_values(Entity& e, std::string_view name, ParameterTy
     return values;
 }
 
+/// The colours of a parameter of a grid, three numbers for each cell, from the file's colour space;
+/// empty where it is not given. Errors: as those of `cell_values`.
+std::vector<float> cell_colours(Entity& e, std::string_view name, const LatticePlace& n) {
+    const std::span<const float> given = cell_values(e, name, ParameterType::rgb, n);
+    std::vector<float> values(given.begin(), given.end());
+    const Parameter* p = e.parameters.find(name, {ParameterType::rgb});
+    if (!p || p->colour_space == ColourSpace::srgb) return values;
+    for (size_t i = 0; i < values.size(); i += 3) {
+        const Rgb c = clipped_to_rec709({values[i], values[i + 1], values[i + 2]}, p->colour_space);
+        values[i] = c.r, values[i + 1] = c.g, values[i + 2] = c.b;
+    }
+    return values;
+}
+
 /// A grid of one number for each cell; null where the parameter is not given.
 std::shared_ptr<const DensityGrid> uniform_grid(Entity& e, const CurrentTransform& space,
                                                 std::string_view name) {
@@ -155,12 +169,12 @@ Glow thermal_glow(std::shared_ptr<const DensityGrid> temperature, float offset, 
     return glow;
 }
 
-/// The radiance that each cell of a grid adds per unit of length, a parameter of our own; null
-/// where it is not given or all dark.
-std::shared_ptr<const EmissionField> emission_field(Entity& e, const CurrentTransform& space) {
-    const LatticePlace n = cells(e);
-    const std::span<const float> values = cell_values(e, "emission", ParameterType::rgb, n);
+/// The radiance that each cell of a grid adds per unit of length, by its channels; null where all
+/// are dark.
+std::shared_ptr<const EmissionField> emission_field(std::span<const float> values, Entity& e,
+                                                    const CurrentTransform& space) {
     if (std::ranges::all_of(values, [](float v) { return v == 0; })) return nullptr;
+    const LatticePlace n = cells(e);
     const Bounds3 box = box_of(e);
     std::vector<float> whole(values.size() / 3), part(values.size() / 3);
     const auto grid = [&](const std::vector<float>& cells) {
@@ -184,7 +198,8 @@ void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform
         throw Error(
             ErrorKind::scene, e.where,
             "medium " + in_quotes(medium.name) + " has no grid; expected \"float density\"");
-    medium.source = emission_field(e, space);
+    // A parameter of our own
+    medium.source = emission_field(cell_colours(e, "emission", cells(e)), e, space);
     auto temperature = uniform_grid(e, space, "temperature");
     if (temperature && p.has("Le"))
         e.refuse("Le", "medium " + in_quotes(medium.name) +
@@ -214,14 +229,32 @@ void uniform_medium(MediumDescription& medium, Entity& e, const CurrentTransform
     }
 }
 
+/// The emission of the cells of an "rgbgrid": the radiance Le of what absorbs there.
+std::shared_ptr<const EmissionField> emission_of_absorption(std::span<const float> absorption,
+                                                            float scale, Entity& e,
+                                                            const CurrentTransform& space,
+                                                            const BuildContext& context) {
+    const std::vector<float> light = cell_colours(e, "Le", cells(e));
+    const float factor = not_negative(e, "Lescale") * scale;
+    if (light.empty()) return nullptr;
+    if (absorption.empty())
+        e.refuse("Le", "\"Le\" is the light of what absorbs; expected \"rgb sigma_a\" beside it");
+    std::vector<float> values(light.size());
+    for (size_t i = 0; i < values.size(); ++i)
+        values[i] = scaled_light(Rgb{light[i] * absorption[i]}, factor,
+                                 e.parameters.where("Le", e.where), context)
+                        .r;
+    return emission_field(values, e, space);
+}
+
 /// Makes a medium of the mean colour of its cells, as dense in each of them as its extinction is,
-/// all channels together.
+/// all channels together. What it emits has the colours of the cells.
 void rgb_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,
                 BuildContext& context) {
     const LatticePlace n = cells(e);
     const float scale = not_negative(e, "scale");
-    const std::span<const float> absorption = cell_values(e, "sigma_a", ParameterType::rgb, n),
-                                 scattering = cell_values(e, "sigma_s", ParameterType::rgb, n);
+    const std::vector<float> absorption = cell_colours(e, "sigma_a", n),
+                             scattering = cell_colours(e, "sigma_s", n);
     const size_t count = std::max(absorption.size(), scattering.size()) / 3;
     if (count == 0)
         throw Error(ErrorKind::scene, e.where,
@@ -245,11 +278,10 @@ void rgb_medium(MediumDescription& medium, Entity& e, const CurrentTransform& sp
     if (mean > 0)
         for (float& v : extinction) v /= float(mean);
     medium.density = cell_grid(extinction, n, box_of(e), space.get(e.where).inverse(), e.where);
+    medium.source = emission_of_absorption(absorption, scale, e, space, context);
     context.log.add(e.where, "medium " + in_quotes(medium.name) +
-                                 ": grids of type \"rgbgrid\" have one colour, the mean of their "
-                                 "cells'; how dense they are varies" +
-                                 (e.parameters.has("Le") ? "; they do not emit" : ""));
-    e.parameters.ignore({"Le", "Lescale"});
+                                 ": what grids of type \"rgbgrid\" scatter and absorb has one "
+                                 "colour, the mean of their cells'; how dense they are varies");
 }
 
 void cloud_medium(MediumDescription& medium, Entity& e, const CurrentTransform& space,

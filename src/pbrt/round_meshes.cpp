@@ -71,6 +71,38 @@ CurvePoint evaluate(const CurveDescription& curve, size_t first, float t) {
     return {p[0], derivative};
 }
 
+/// A place along a curve at which its mesh has vertices.
+struct Ring {
+    Vec3 position, tangent;  ///< the latter of unit length
+    size_t segment;
+    float t;  ///< along the segment
+    float u;  ///< along the whole curve
+    float width;
+};
+
+std::vector<Ring> rings_of(const CurveDescription& curve) {
+    const size_t segments = curve.segments(), count = segments * kStepsPerSegment + 1;
+    const auto degree = static_cast<size_t>(curve.degree);
+    std::vector<Ring> rings(count);
+    Vec3 tangent{0, 0, 1};
+    for (size_t r = 0; r < count; ++r) {
+        const size_t segment = std::min(r / kStepsPerSegment, segments - 1);
+        const float t = static_cast<float>(r - segment * kStepsPerSegment) / kStepsPerSegment;
+        const CurvePoint at = evaluate(curve, curve.is_bspline ? segment : segment * degree, t);
+        if (length(at.derivative) > 0) tangent = normalize(at.derivative);
+        const float u = static_cast<float>(r) / static_cast<float>(count - 1);
+        rings[r] = {at.position, tangent, segment, t, u, (1 - u) * curve.width0 + u * curve.width1};
+    }
+    return rings;
+}
+
+/// Between two unit vectors on the great circle, as pbrt: no more than a right angle apart.
+Vec3 turned_between(Vec3 a, Vec3 b, float t) {
+    const float angle = std::acos(std::clamp(dot(a, b), 0.0f, 1.0f));
+    if (!(angle > 0)) return a;
+    return (std::sin((1 - t) * angle) * a + std::sin(t * angle) * b) / std::sin(angle);
+}
+
 }  // namespace
 
 TriangleMesh cylinder_mesh(float radius, float z_min, float z_max, float phi_max_degrees,
@@ -95,10 +127,7 @@ int sides_of(const CurveDescription& curve) {
 }
 
 TriangleMesh curve_mesh(const CurveDescription& curve) {
-    const auto degree = static_cast<size_t>(curve.degree);
-    const size_t segments =
-        curve.is_bspline ? curve.points.size() - degree : (curve.points.size() - 1) / degree;
-    const size_t rings = segments * kStepsPerSegment + 1;
+    const std::vector<Ring> rings = rings_of(curve);
     const bool is_prism = is_slender(curve);
     const auto sides = static_cast<size_t>(sides_of(curve));
     const float turn = turn_of(curve);
@@ -107,27 +136,42 @@ TriangleMesh curve_mesh(const CurveDescription& curve) {
     const auto corners = static_cast<float>(sides);
     const float widening = kPi / (corners * std::sin(kPi / corners));
     TriangleMesh m;
-    Vec3 tangent{0, 0, 1}, side;
-    for (size_t r = 0; r < rings; ++r) {
-        const size_t segment = std::min(r / kStepsPerSegment, segments - 1);
-        const float t = static_cast<float>(r - segment * kStepsPerSegment) / kStepsPerSegment;
-        const CurvePoint at = evaluate(curve, curve.is_bspline ? segment : segment * degree, t);
-        if (length(at.derivative) > 0) tangent = normalize(at.derivative);
+    Vec3 side;
+    for (const Ring& at : rings) {
         // The side turns no more than the tangent makes it, so that the tube doesn't twist.
-        side = normalize(side - dot(side, tangent) * tangent);
-        if (!(length(side) > 0.5f)) side = Frame::from_z(tangent).x;
-        const Vec3 other = cross(tangent, side);
-        const float u = static_cast<float>(r) / static_cast<float>(rings - 1);
-        const float radius = 0.5f * widening * ((1 - u) * curve.width0 + u * curve.width1);
+        side = normalize(side - dot(side, at.tangent) * at.tangent);
+        if (!(length(side) > 0.5f)) side = Frame::from_z(at.tangent).x;
+        const Vec3 other = cross(at.tangent, side);
+        const float radius = 0.5f * widening * at.width;
         for (size_t i = 0; i <= sides; ++i) {
             const float v = static_cast<float>(i) / corners, angle = 2 * kPi * v + turn;
             const Vec3 n = std::cos(angle) * side + std::sin(angle) * other;
             if (!is_prism) m.normals.push_back(n);
             m.positions.push_back(at.position + radius * n);
-            m.uvs.push_back({u, v});
+            m.uvs.push_back({at.u, v});
         }
     }
-    m.triangles = grid_triangles(rings, sides + 1);
+    m.triangles = grid_triangles(rings.size(), sides + 1);
+    return m;
+}
+
+TriangleMesh ribbon_mesh(const CurveDescription& curve) {
+    const std::vector<Ring> rings = rings_of(curve);
+    TriangleMesh m;
+    Vec3 across = Frame::from_z(rings.front().tangent).x;
+    for (const Ring& at : rings) {
+        const Vec3 facing = turned_between(normalize(curve.normals[at.segment]),
+                                           normalize(curve.normals[at.segment + 1]), at.t);
+        // A normal along the curve says nothing, and the strip goes on as it is.
+        const Vec3 upright = cross(at.tangent, facing);
+        if (length(upright) > 0) across = normalize(upright);
+        for (const float v : {0.0f, 1.0f}) {
+            m.positions.push_back(at.position + (v - 0.5f) * at.width * across);
+            m.normals.push_back(cross(across, at.tangent));
+            m.uvs.push_back({at.u, v});
+        }
+    }
+    m.triangles = grid_triangles(rings.size(), 2);
     return m;
 }
 

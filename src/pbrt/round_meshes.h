@@ -17,10 +17,22 @@ struct CurveDescription {
     int degree = 3;
     bool is_bspline = false;
     float width0 = 1, width1 = 1;  ///< diameters at both ends
+    /// The directions that a ribbon faces, at both ends of each segment. Empty for others.
+    std::vector<Vec3> normals = {};
+
+    /// How many segments the control points make.
+    size_t segments() const {
+        const auto n = static_cast<size_t>(degree);
+        return is_bspline ? points.size() - n : (points.size() - 1) / n;
+    }
 };
 /// An open tube along the curve, of so many sides; u runs along it, v around it. Slender ones have
 /// flat sides, turned by a hash of the curve, all others smooth normals.
 int sides_of(const CurveDescription& curve);
 TriangleMesh curve_mesh(const CurveDescription& curve);
+/// A strip along the curve that faces its normals, as far as they stand upright on it: from one end
+/// of a segment to the other they turn evenly. u runs along it, v across, as seen from the normals'
+/// side as in pbrt.
+TriangleMesh ribbon_mesh(const CurveDescription& curve);
 
 }  // namespace covtrace

@@ -178,8 +178,9 @@ class Parser {
             builder_.scale_displacement_edges(static_cast<float>(scale));
             return;
         }
-        const bool changes_nothing =
-            value.text == "false" || plain == "rendercoordsys" || plain == "wavefront";
+        // Colours here have no noise of wavelengths that could be the same in each pixel.
+        const bool changes_nothing = value.text == "false" || plain == "rendercoordsys" ||
+                                     plain == "wavefront" || plain == "disablewavelengthjitter";
         if (!changes_nothing) log_.add(where_, "option " + in_quotes(n) + " is ignored");
     }
 

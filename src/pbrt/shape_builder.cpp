@@ -88,6 +88,18 @@ void vertices(Mesh& mesh, Entity& e, WarningLog& log) {
     match_positions(mesh.uvs, mesh.positions.size(), "uv", e, log);
 }
 
+/// The normals of a ribbon, `count` of them, none of them zero.
+std::vector<Vec3> ribbon_normals(Entity& e, size_t count) {
+    std::vector<Vec3> normals = e.parameters.triples("N");
+    if (normals.size() != count)
+        e.refuse("N", "a ribbon of " + std::to_string(count - 1) + " segments has " +
+                          std::to_string(normals.size()) + " normals; expected \"normal N\" with " +
+                          std::to_string(count) + ", of both ends of each segment");
+    for (const Vec3& n : normals)
+        if (!(length(n) > 0)) e.refuse("N", "a normal of a ribbon must not be zero");
+    return normals;
+}
+
 }  // namespace
 
 std::vector<ShapeGeometry> ShapeBuilder::triangle_mesh(Entity& e) {
@@ -178,9 +190,15 @@ BuiltShape ShapeBuilder::curve(Entity& e) {
     if (c.points.size() < degree + 1 || (!c.is_bspline && (c.points.size() - 1) % degree != 0))
         e.refuse("P", std::to_string(c.points.size()) +
                           " control points don't make a curve of degree " + std::to_string(degree));
-    context_.log.add(e.where, "shape \"curve\" is rendered as a thin tube");
-    p.ignore({"N", "splitdepth"});
+    p.ignore({"splitdepth"});
     BuiltShape built;
+    if (type == "ribbon") {
+        c.normals = ribbon_normals(e, c.segments() + 1);
+        built.geometry = {std::make_shared<const TriangleMesh>(ribbon_mesh(c))};
+        return built;
+    }
+    p.ignore({"N"});
+    context_.log.add(e.where, "shape \"curve\" is rendered as a thin tube");
     built.geometry = {std::make_shared<const TriangleMesh>(curve_mesh(c))};
     built.tube_sides = sides_of(c);
     return built;

@@ -239,6 +239,7 @@ TEST(SceneDirectives, FilesAreFoundInSpiteOfCaseAndBackslashes) {
 TEST(SceneDirectives, OptionsAreAcceptedOrRefused) {
     const auto scene = read_options(
         "Option \"disablepixeljitter\" false\nOption \"seed\" 7\n"
+        "Option \"disablewavelengthjitter\" true\n"
         "Option \"rendercoordsys\" \"world\"\nAccelerator \"bvh\"\n");
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(scene.warnings[0].text, "option \"seed\" is ignored");

@@ -48,6 +48,29 @@ TEST(SceneMedia, AreRead) {
     EXPECT_TRUE(contains(warnings_of(scene), "did you mean \"Wholemilk\"")) << warnings_of(scene);
 }
 
+TEST(SceneMedia, ColouredGridsEmitWhatTheirCellsAbsorb) {
+    const std::string grid =
+        "MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"integer nx\" 2 \"float scale\" 3 "
+        "\"float Lescale\" 10 \"rgb Le\" [ 1 2 3  4 5 6 ] ";
+    const SceneDescription scene = read_world(grid + "\"rgb sigma_a\" [ 1 0 1  2 2 0 ]");
+    ASSERT_TRUE(scene.media.at(0).source);
+    const EmissionField& light = *scene.media[0].source;
+    EXPECT_EQ(light.at({0.25f, 0.5f, 0.5f}), (Rgb{30, 0, 90}));
+    EXPECT_EQ(light.at({0.75f, 0.5f, 0.5f}), (Rgb{240, 300, 0}));
+    EXPECT_FALSE(contains(warnings_of(scene), "emit")) << warnings_of(scene);
+    EXPECT_TRUE(contains(world_error(grid + "\"rgb sigma_s\" [ 1 0 1  2 2 0 ]"),
+                         "expected \"rgb sigma_a\" beside it"));
+}
+
+TEST(SceneMedia, ColouredGridsAreOfTheFilesColourSpace) {
+    const std::string grid =
+        "MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"rgb sigma_a\" [ .2 .5 .3 ]\n"
+        "MakeNamedMedium \"n\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ .2 .5 .3 ]";
+    const SceneDescription scene = read_world("ColorSpace \"rec2020\"\n" + grid);
+    EXPECT_LT(scene.media.at(0).sigma_a.r, 0.1f);
+    EXPECT_EQ(scene.media[0].sigma_a, scene.media[1].sigma_a);
+}
+
 TEST(SceneMedia, LescaleIsAFactorOfHotMediaToo) {
     const std::string hot =
         "\"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" [ 1 1 ] "

@@ -193,6 +193,36 @@ TEST(SceneShapes, SlenderCurvesAreTurnedPrisms) {
     EXPECT_GT(std::abs(angles[0] - angles[1]), 0.01f);
 }
 
+TEST(SceneShapes, RibbonsFaceTheirNormals) {
+    const std::string ribbon =
+        "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" .2 "
+        "\"point3 P\" [ 0 0 0  0 1 0  0 2 0  0 3 0  0 4 0  0 5 0  0 6 0 ] ";
+    const auto scene = read_world(ribbon + "\"normal N\" [ 0 0 2  3 0 0  3 5 0 ]");
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    EXPECT_EQ(scene.shapes.front().tube_sides, 0);
+    const TriangleMesh& m = mesh_of(scene);
+    ASSERT_EQ(m.normals.size(), m.positions.size());
+    expect_near(m.positions[0], {-0.1f, 0, 0}, 1e-6f);
+    expect_near(m.positions[1], {0.1f, 0, 0}, 1e-6f);
+    EXPECT_EQ(m.uvs[0].y, 0);
+    EXPECT_EQ(m.uvs[1].y, 1);
+    for (size_t i = 0; i < m.positions.size(); i += 2) {
+        EXPECT_NEAR(distance(m.positions[i], m.positions[i + 1]), 0.2f, 1e-6f);
+        EXPECT_NEAR(m.uvs[i].x, m.positions[i].y / 6, 1e-6f);
+        // The first segment turns by a right angle, evenly; what leans along the curve changes
+        // nothing.
+        const float angle = kPi / 2 * std::min(1.0f, m.positions[i].y / 3);
+        expect_near(m.normals[i], {std::sin(angle), 0, std::cos(angle)}, 1e-5f);
+    }
+    for (const auto& t : m.triangles)
+        EXPECT_GT(
+            dot(cross(m.positions[t[1]] - m.positions[t[0]], m.positions[t[2]] - m.positions[t[0]]),
+                m.normals[t[0]]),
+            0);
+    for (const char* normals : {"", "\"normal N\" [ 0 0 1 ]", "\"normal N\" [ 0 0 1 0 0 1 0 0 0 ]"})
+        EXPECT_TRUE(contains(world_error(ribbon + normals), "normal")) << normals;
+}
+
 TEST(SceneShapes, MeshFilesAreReadOnceAndShared) {
     const TemporaryFolder folder;
     folder.write("m.ply",
