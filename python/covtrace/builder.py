@@ -28,35 +28,51 @@ def _numbers(values):
     return "[ " + " ".join(repr(float(v)) for v in numpy.ravel(values)) + " ]"
 
 
+def _texts(value):
+    """The value as text where it is a text or a list of texts, None where it is something else."""
+    if isinstance(value, str):
+        return _quoted(value)
+    if isinstance(value, (list, tuple)) and value and all(isinstance(v, str) for v in value):
+        return "[ " + " ".join(_quoted(v) for v in value) + " ]"
+    return None
+
+
 def _parameter(name, value):
     """One parameter as text. `name` may carry pbrt's type, "texture reflectance"; else the value
-    tells: a number, a text, a truth value, three numbers for a colour."""
+    tells: a number, a text, a truth value, three numbers for a colour; a few names do, too."""
+    texts = _texts(value)
+    if " " not in name and name in _TYPES and texts is None:
+        name = f"{_TYPES[name]} {name}"
     if " " in name:
         kind = name.split()[0]
         if isinstance(value, bool):
             return f"{_quoted(name)} {'true' if value else 'false'}"
-        if isinstance(value, str):
-            return f"{_quoted(name)} {_quoted(value)}"
+        if texts is not None:
+            return f"{_quoted(name)} {texts}"
         if kind == "integer":
             return f"{_quoted(name)} [ {' '.join(str(int(v)) for v in numpy.ravel(value))} ]"
         return f"{_quoted(name)} {_numbers(value)}"
     if isinstance(value, (bool, numpy.bool_)):
         return f'"bool {name}" {"true" if value else "false"}'
-    if isinstance(value, str):
-        return f'"string {name}" {_quoted(value)}'
+    if texts is not None:
+        return f'"string {name}" {texts}'
     if isinstance(value, (int, numpy.integer)) and name in _INTEGERS:
         return f'"integer {name}" {int(value)}'
     if isinstance(value, (int, float, numpy.number)):
         return f'"float {name}" {float(value)!r}'
     values = numpy.asarray(value, dtype=float)
     if values.shape == (3,):
-        kind = "point3" if name in ("from", "to") else "rgb"
-        return f'"{kind} {name}" {_numbers(values)}'
+        return f'"rgb {name}" {_numbers(values)}'
     raise TypeError(f"parameter {name!r}: give its type as in 'float {name}' or 'spectrum {name}'")
 
 
 _INTEGERS = {"degree", "dimension", "levels", "maxdepth", "nsamples", "pixelsamples", "splitdepth",
              "xresolution", "yresolution"}
+
+#: Types of parameters whose values are neither colours nor single numbers.
+_TYPES = {"from": "point3", "to": "point3", "P": "point3", "p0": "point3", "p1": "point3", "portal": "point3",
+          "N": "normal", "S": "vector3", "v1": "vector3", "v2": "vector3", "dir": "vector3", "uv": "point2",
+          "indices": "integer", "screenwindow": "float"}
 
 
 def _parameters(values):
@@ -102,24 +118,24 @@ class SceneBuilder:
 
     def __init__(self) -> None:
         # Lines of the text, each with the call that it comes from
+        self._camera: list[tuple[str, str]] = []
         self._view: list[tuple[str, str]] = []
         self._world: list[tuple[str, str]] = []
         self._meshes: list[tuple[str, list[str], numpy.ndarray, numpy.ndarray]] = []
         self._textures: list[tuple[str, Image]] = []
         self._files: dict[str, str] = {}  # the calls of meshes and textures, by file
-        self._camera_given = False
         self._shutter = (0, 1)
 
     def camera(self, eye: Sequence[float] = (0, 0, 0), target: Sequence[float] = (0, 0, 1),
                up: Sequence[float] = (0, 1, 0), kind: str = "perspective",
                resolution: tuple[int, int] = (640, 360), shutter: tuple[float, float] = (0, 1),
                **parameters: Any) -> None:
-        """Sets the camera; kind and parameters as pbrt's Camera: fov, lensradius, focaldistance ..."""
-        self._camera_given = True
+        """Sets the camera, in place of an earlier one; kind and parameters as pbrt's Camera: fov,
+        lensradius, focaldistance ..."""
         self._shutter = shutter
         width, height = resolution
         call = describe_call("camera", kind)
-        self._view += [(line, call) for line in [
+        self._camera = [(line, call) for line in [
             "LookAt " + " ".join(repr(float(v)) for v in (*eye, *target, *up)),
             f"Camera {_quoted(kind)} "
             + _parameters({"float shutteropen": shutter[0], "float shutterclose": shutter[1],
@@ -136,12 +152,9 @@ class SceneBuilder:
                        (f'Sampler "zsobol" "integer pixelsamples" {int(spp)}', call)]
 
     def texture(self, name: str, values: ArrayLike, **parameters: Any) -> None:
-        """An image as texture: (height, width) or (height, width, 3), linear values; rows from the
-        top. Use it as `**{"texture reflectance": name}`."""
-        values = numpy.asarray(values, dtype=numpy.float32)
-        if values.ndim not in (2, 3):
-            raise ValueError(f"values has the shape {values.shape}; expected (height, width) or "
-                             "(height, width, 3)")
+        """An image as texture: (height, width) for numbers, (height, width, 3) for colours, linear
+        values; rows from the top. Use it as `**{"texture reflectance": name}`."""
+        values = _texels(values)
         rgb = values if values.ndim == 3 else numpy.repeat(values[:, :, None], 3, axis=2)
         image = Image.from_arrays(rgb)
         file = f"texture-{len(self._textures)}.exr"
@@ -212,12 +225,12 @@ class SceneBuilder:
         return "\n".join([*(line for line, _ in self._lines()), ""])
 
     def _lines(self) -> list[tuple[str, str | None]]:
-        if not self._camera_given:
+        if not self._camera:
             raise ValueError("the scene has no camera; call camera()")
         start, end = (float(t) for t in self._shutter)
         # The time of `end_transform` is the shutter's end, not the time 1 that pbrt would give it.
         times = [(f"TransformTimes {start!r} {end!r}", None)] if start < end else []
-        return [*times, *self._view, ("WorldBegin", None), *self._world]
+        return [*times, *self._camera, *self._view, ("WorldBegin", None), *self._world]
 
     def written(self, folder: str | os.PathLike[str]) -> tuple[str, BuilderCalls]:
         """Writes the scene as `write` does; returns its path, and the calls that it comes from."""
@@ -265,6 +278,22 @@ def _require_distinct(folder, name, own, text):
         if same(name, file):
             raise UsageError(f"name: {name!r} is the file of a mesh or texture of the scene already; "
                              "expected another one, such as scene.pbrt")
+
+
+def _texels(values):
+    """The values of a texture in single precision. `UsageError` for those that are none."""
+    if isinstance(values, (str, os.PathLike)):
+        raise UsageError(f"values is {values!r}; expected an array, such as covtrace.Image.read({values!r}).rgb")
+    given = numpy.asarray(values)
+    if given.ndim not in (2, 3) or not given.size or (given.ndim == 3 and given.shape[2] not in (3, 4)):
+        raise UsageError(f"values has the shape {given.shape}; expected (height, width) or (height, width, 3)")
+    if given.dtype in (numpy.uint8, numpy.uint16) and given.max() > 1:
+        raise UsageError(f"values has the type {given.dtype} and numbers up to {given.max()}; expected linear "
+                         "values, as covtrace.Image.read gives them of a picture's file")
+    values = given.astype(numpy.float32)
+    if not numpy.isfinite(values).all():
+        raise UsageError("values has numbers that are not finite; expected finite ones")
+    return values
 
 
 def _array(values, width, what, length=None):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from .errors import Error
@@ -34,27 +34,36 @@ class BuilderCalls:
         self.files: dict[str, str] = {}  #: the call of each mesh and texture, by the file's name
 
     def named(self, message: str) -> str:
-        """The message with the call in place of its place in the text or in a file that was written."""
+        """The message with calls in place of places in the text or in a file that was written."""
         found = _PLACE.match(message)
         if not found:
             return message
         call, name = None, os.path.basename(found["file"])
         if found["line"] and name == os.path.basename(self.text):
-            line = int(found["line"])
-            call = self.lines[line - 1] if 0 < line <= len(self.lines) else None
+            call = self._call_of_line(found["line"])
         elif name in self.files:
             call = self.files[name]
         elif name == os.path.basename(self.text):
             call = "SceneBuilder"
-        return message if call is None else f"{call}: {message[found.end():]}"
+        if call is None:
+            return message
+        # Places that the message goes on to tell, as that of an earlier definition
+        rest = re.sub(re.escape(self.text) + r":(\d+):\d+",
+                      lambda place: self._call_of_line(place[1]) or place[0], message[found.end():])
+        return f"{call}: {rest}"
 
-    @contextmanager
-    def name_errors(self) -> Iterator[None]:
-        """Names the calls in errors of the block."""
-        try:
-            yield
-        except Error as error:
-            named = self.named(str(error))
-            if named == str(error):
-                raise
-            raise type(error)(named) from None
+    def _call_of_line(self, line: str) -> str | None:
+        number = int(line)
+        return self.lines[number - 1] if 0 < number <= len(self.lines) else None
+
+
+@contextmanager
+def name_errors(named: Callable[[str], str]) -> Iterator[None]:
+    """Puts names into the messages of errors of the block."""
+    try:
+        yield
+    except Error as error:
+        message = named(str(error))
+        if message == str(error):
+            raise
+        raise type(error)(message) from None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
@@ -12,6 +11,7 @@ from . import _covtrace
 from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, lamps_of, layers_of, path_of, resolution_of,
                         seconds_of, shutter_of)
 from .builder import SceneBuilder
+from .builder_calls import name_errors
 from .errors import UsageError
 from .image import Image
 from .progress import Progress
@@ -145,11 +145,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "progress": function_of("progress", progress),
                "preview": _with_images(function_of("preview", preview)), "cancel": cancel_of(cancel)}
     if isinstance(scene, SceneBuilder):
-        # The files must last until the scene is built, which reads the textures.
-        with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
-            file, calls = scene.written(folder)
-            with calls.name_errors():
-                return _render(Scene._of_builder(file, search_paths, calls, choices), options)
+        return _render(Scene(scene, search_paths, **choices), options)
     if not isinstance(scene, Scene):
         scene = Scene(path_of("scene", scene, "a file's path, a Scene or a SceneBuilder"),
                       search_paths, shutter, **choices)
@@ -173,7 +169,8 @@ def _with_images(preview: Callable[[Image], Any] | None) -> Callable[[_covtrace.
 
 
 def _render(scene: Scene, options: dict[str, Any]) -> Image:
-    planes, complete, statistics, texts = _covtrace.render(scene._description, options)
+    with name_errors(scene._named):
+        planes, complete, statistics, texts = _covtrace.render(scene._description, options)
     for text in texts:
         warn(scene._named(text))
     return Image(planes, complete, statistics)

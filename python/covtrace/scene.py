@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
+import weakref
 from collections.abc import Callable, Iterable, Mapping
+from typing import NoReturn
 
 import numpy
 from numpy.typing import NDArray
 
 from . import _covtrace
 from .arguments import choice_of, path_of, paths_of, shutter_of, text_of
-from .builder_calls import BuilderCalls
+from .builder import SceneBuilder
+from .builder_calls import name_errors
 from .scene_parts import AreaLight, Camera, Closed, Instance, Light, Material, Parts, Shape
 from .scene_warnings import warn
 
@@ -22,10 +27,19 @@ def _read(file: str, search_paths: Iterable[str | os.PathLike[str]],
     return _covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths), shutter, *chosen)
 
 
+class _OwnFolder:
+    """A folder that lasts as long as the scenes that read from it."""
+
+    def __init__(self) -> None:
+        self.path = tempfile.mkdtemp(prefix="covtrace-")
+        weakref.finalize(self, shutil.rmtree, self.path, True)
+
+
 class Scene(Closed):
     """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
-    `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).
+    `Scene(file)` reads a file and the meshes that it names, or what a `SceneBuilder` has collected
+    so far; `Scene.from_string` a text (pbrt-v4).
     `warnings` tells what the scene asks for and covtrace replaces or ignores, and what stands in for
     a camera or lights that it has not; each is warned of, too, the latter where it is rendered.
 
@@ -34,32 +48,29 @@ class Scene(Closed):
     """
 
     _named: Callable[[str], str]  # puts names into messages, for scenes of a SceneBuilder
+    _files: _OwnFolder | None = None  # where a SceneBuilder's textures are, which each render reads
 
-    def __init__(self, file: str | os.PathLike[str],
+    def __init__(self, file: str | os.PathLike[str] | SceneBuilder,
                  search_paths: Iterable[str | os.PathLike[str]] = (),
                  shutter: tuple[float, float] | None = None, *, camera: str | int | None = None,
                  gltf_scene: str | int | None = None, animation: str | int | None = None,
                  variant: str | int | None = None) -> None:
-        """Reads a file. shutter: when it opens and closes, in place of the file's; seconds of glTF's
+        """Reads a file, or a `SceneBuilder` as it is now. shutter: when it opens and closes, in place of the file's; seconds of glTF's
         animations, whose nodes rest at 0 without it. camera, gltf_scene, animation, variant: one
         of a glTF file's by its name or its number from 0; animations also "none" and "all", else the
         first."""
-        file = path_of("file", file)
         self._named = str
+        if isinstance(file, SceneBuilder):
+            self._files = _OwnFolder()
+            file, calls = file.written(self._files.path)
+            self._named = calls.named
+        file = path_of("file", file, "a file's path or a SceneBuilder")
         self._is_placed = _covtrace.is_gltf(file)
         self._shutter = shutter_of(shutter)
-        self._take(_read(file, search_paths, self._shutter,
-                         {"camera": camera, "gltf_scene": gltf_scene, "animation": animation,
-                          "variant": variant}))
-
-    @classmethod
-    def _of_builder(cls, file: str, search_paths: Iterable[str | os.PathLike[str]],
-                    calls: BuilderCalls, choices: Mapping[str, str | int | None]) -> Scene:
-        """The scene that a SceneBuilder wrote; its warnings name the builder's calls."""
-        scene = cls.__new__(cls)
-        scene._is_placed, scene._shutter, scene._named = False, None, calls.named
-        scene._take(_read(file, search_paths, None, choices))
-        return scene
+        with name_errors(self._named):
+            self._take(_read(file, search_paths, self._shutter,
+                             {"camera": camera, "gltf_scene": gltf_scene, "animation": animation,
+                              "variant": variant}))
 
     @classmethod
     def from_string(cls, text: str, folder: str | os.PathLike[str] = ".", name: str = "scene",
@@ -100,8 +111,17 @@ class Scene(Closed):
         """A scene that can be changed apart from this one; meshes are shared."""
         scene = Scene.__new__(Scene)
         scene._is_placed, scene._shutter, scene._named = self._is_placed, self._shutter, self._named
-        scene._description = self._description.copy()
+        scene._files, scene._description = self._files, self._description.copy()
         return scene
+
+    def __copy__(self) -> Scene:
+        return self.copy()
+
+    def __deepcopy__(self, memo: object) -> Scene:
+        return self.copy()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a Scene cannot be pickled; another process gets the file's path, or a SceneBuilder")
 
     @property
     def camera(self) -> Camera:
@@ -120,7 +140,9 @@ class Scene(Closed):
 
     def remove_light(self, index: int) -> None:
         """Removes one of `lights`; those behind it move up."""
-        self._description.remove_light(range(len(self.lights))[index])
+        lights = self.lights
+        lights[index]  # raises IndexError where there is none
+        self._description.remove_light(range(len(lights))[index])
 
     @property
     def area_lights(self) -> Parts:

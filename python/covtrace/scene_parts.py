@@ -187,6 +187,9 @@ class Shape(Placed):
     def material(self, index: int) -> None:
         self._description.set_material(self._index, index)
 
+    def __repr__(self) -> str:
+        return f"<shape {self._index}, material {self.material}>"
+
 
 class Instance(Placed):
     """An instance of an object."""
@@ -195,6 +198,9 @@ class Instance(Placed):
 
     def __init__(self, description: _covtrace.SceneDescription, index: int) -> None:
         self._description, self._index = description, index
+
+    def __repr__(self) -> str:
+        return f"<instance {self._index}>"
 
 
 class Parts(Sequence[Any]):

@@ -1,8 +1,12 @@
 """Scenes of covtrace.SceneBuilder: they move, and scenes that it can't build are refused."""
 
+import copy
+import gc
 import pathlib
+import pickle
 import tempfile
 import unittest
+import warnings
 
 import numpy
 
@@ -67,6 +71,78 @@ class Builder(unittest.TestCase):
         with self.assertWarns(covtrace.SceneWarning) as caught:
             covtrace.render(dark, spp=1, resolution=(4, 4))
         self.assertTrue(str(caught.warning).startswith("SceneBuilder: the scene has no lights"), caught.warning)
+
+    def test_earlier_definitions_are_named_by_their_calls(self):
+        scene, place = self.broken(lambda s: [s.texture("t", numpy.ones((2, 2))) for _ in range(2)])
+        with self.assertRaises(covtrace.SceneError) as caught:
+            covtrace.render(scene, spp=1)
+        call = place + "texture('t')"
+        self.assertEqual(str(caught.exception), f'{call}: texture "t" is already defined at {call}')
+
+    def test_another_camera_takes_the_place_of_the_first(self):
+        def seen_from(*eyes):
+            scene = covtrace.SceneBuilder()
+            scene.light("infinite", L=(1, 1, 1))
+            scene.shape("sphere")
+            for eye in eyes:
+                scene.camera(eye=eye, target=(0, 0.5, 0), resolution=(16, 8))
+            return covtrace.render(scene, spp=2).rgb
+        numpy.testing.assert_array_equal(seen_from((0, 0, -5), (3, 1, 4)), seen_from((3, 1, 4)))
+
+    def test_scenes_of_builders_can_be_changed(self):
+        builder = covtrace.SceneBuilder()
+        builder.camera(eye=(0, 0, -2), target=(0, 0, 0), fov=40, resolution=(8, 8))
+        builder.light("infinite", L=(1, 1, 1))
+        builder.texture("grey", numpy.full((2, 2, 3), 0.25))
+        builder.material("wall", "diffuse", **{"texture reflectance": "grey"})
+        builder.shape("bilinearmesh", material="wall",
+                      P=[[-9, -9, 0], [9, -9, 0], [-9, 9, 0], [9, 9, 0]])
+        scene = covtrace.Scene(builder)
+        numpy.testing.assert_array_equal(covtrace.render(scene, spp=4).rgb, covtrace.render(builder, spp=4).rgb)
+        folder = pathlib.Path(scene._files.path)
+        for other in (copy.copy(scene), copy.deepcopy(scene)):
+            other.materials["wall"]["reflectance"] = 0.75
+            self.assertAlmostEqual(covtrace.render(other, spp=4).rgb.mean(), 0.75, delta=1e-3)
+        self.assertAlmostEqual(covtrace.render(scene, spp=4).rgb.mean(), 0.25, delta=1e-3)
+        self.assertTrue(folder.is_dir())
+        with self.assertRaisesRegex(TypeError, "cannot be pickled; another process gets the file's path"):
+            pickle.dumps(scene)
+        del scene, other
+        gc.collect()
+        self.assertFalse(folder.exists())
+        broken, place = self.broken(lambda s: s.material("red", "no-such-kind"))
+        with self.assertRaises(covtrace.SceneError) as caught:
+            covtrace.Scene(broken)
+        self.assertTrue(str(caught.exception).startswith(place), caught.exception)
+
+    def test_parameters_types(self):
+        scene = covtrace.SceneBuilder()
+        scene.camera(eye=(0, 0, -2), target=(0, 0, 0), kind="orthographic", screenwindow=(-1, 1, -1, 1), resolution=(8, 8))
+        scene.light("infinite", L=(1, 1, 1))
+        for name, grey in (("dark", 0.2), ("bright", 0.6)):
+            scene.material(name, "diffuse", reflectance=(grey, grey, grey))
+        scene.material("both", "mix", materials=["dark", "bright"], amount=1)
+        corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]
+        scene.shape("trianglemesh", material="both", P=corners, N=[[0, 0, 1]] * 4,
+                    uv=numpy.zeros((4, 2)), indices=[[0, 1, 2], [0, 2, 3]])
+        scene.shape("curve", P=[[0, 5, 0], [0, 6, 0], [0, 7, 0], [0, 8, 0]], type="ribbon", N=[[0, 0, 1]] * 2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            image = covtrace.render(scene, spp=1, method="uniform")
+        numpy.testing.assert_allclose(image.rgb, 0.6, atol=1e-5)
+
+    def test_values_of_textures(self):
+        scene = covtrace.SceneBuilder()
+        for values, message in (
+            ("brick.png", r"Image.read\('brick.png'\).rgb"),
+            (numpy.full((2, 2, 3), 128, numpy.uint8), "uint8 and numbers up to 128; expected linear values"),
+            ([[0.5, float("nan")]], "not finite"),
+            (numpy.ones((2, 2, 2)), "shape"),
+            (numpy.ones((0, 2)), "shape"),
+        ):
+            with self.subTest(message), self.assertRaisesRegex(covtrace.UsageError, message):
+                scene.texture("t", values)
+        scene.texture("mask", numpy.eye(2, dtype=numpy.uint8))
 
     def test_end_transforms_hold_at_the_shutters_end(self):
         def columns(shutter):

@@ -130,6 +130,8 @@ class Parts(unittest.TestCase):
     def test_removed_lights(self):
         self.scene.remove_light(-1)
         self.assertEqual([light.kind for light in self.scene.lights], ["infinite"])
+        with self.assertRaisesRegex(IndexError, "there is no light 1; the scene has 1"):
+            self.scene.remove_light(1)
         self.assertLess(self.render(self.scene).rgb.mean(), self.render(scene()).rgb.mean())
 
     def test_camera(self):
