@@ -38,13 +38,18 @@ void require_same_window(const NamedImage& a, const NamedImage& b) {
         refuse("their pixels are in different places of the frame");
 }
 
+/// Refuses two images with the same pixels, but those that are black, as the frames are in which a
+/// picture has not been faded in yet.
 void require_other_noise(const NamedImage& a, const FoundLayers& of_a, const NamedImage& b,
                          const FoundLayers& of_b) {
+    bool is_black = true;
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < a.image.pixel_count(); ++i) {
             const float va = of_a.color[k]->values[i], vb = of_b.color[k]->values[i];
             if (va != vb && !(std::isnan(va) && std::isnan(vb))) return;
+            is_black = is_black && va == 0;
         }
+    if (is_black) return;
     throw Error(ErrorKind::usage, b.name + " has the same pixels as " + a.name +
                                       "; expected a render with another seed, whose noise tells "
                                       "how much of it is left");

@@ -15,22 +15,27 @@ namespace {
 using Names = std::span<const std::string_view>;
 
 // Names in the order in which they are preferred.
-constexpr auto kColor = std::to_array<std::string_view>({"raw", ""});
+constexpr auto kColor = std::to_array<std::string_view>({"raw", "", "Ci"});
 constexpr auto kVariance = std::to_array<std::string_view>({"variance", "Variance"});
 constexpr auto kAlbedo =
-    std::to_array<std::string_view>({"featurealbedo", "albedo", "Albedo", "Denoising Albedo"});
-constexpr auto kNormal = std::to_array<std::string_view>(
-    {"featureN", "Ns", "N", "Denoising Normal", "normal", "normals", "Normal", "nn", "sh_normal"});
-constexpr auto kDepth =
-    std::to_array<std::string_view>({"Z", "Denoising Depth", "depth", "Depth", "dd", "dd.y"});
+    std::to_array<std::string_view>({"featurealbedo", "albedo", "Albedo", "Denoising Albedo",
+                                     "denoise_albedo", "VRayDiffuseFilter"});
+constexpr auto kNormal =
+    std::to_array<std::string_view>({"featureN", "Ns", "N", "Denoising Normal", "normal", "normals",
+                                     "Normal", "nn", "sh_normal", "VRayNormals"});
+constexpr auto kDepth = std::to_array<std::string_view>(
+    {"Z", "Denoising Depth", "depth", "Depth", "dd", "dd.y", "z", "VRayZDepth"});
 constexpr auto kPlace = std::to_array<std::string_view>({"P"});
 
-/// The channel `suffix` of a layer. The root's have no dot, and pbrt-v4 wrote "Nsx" once.
+/// The channel `suffix` of a layer. The root's have no dot, RenderMan writes small letters, and
+/// pbrt-v4 wrote "Nsx" once.
 const Channel* channel_of(const Image& image, std::string_view layer, char suffix) {
-    if (layer.empty()) return image.find(std::string(1, suffix));
-    if (const Channel* c = image.find(std::string(layer) + "." + suffix)) return c;
-    if (suffix >= 'X' && suffix <= 'Z')
-        return image.find(std::string(layer) + char(suffix - 'X' + 'x'));
+    const std::string before = layer.empty() ? "" : std::string(layer) + ".";
+    const char small = char(suffix - 'A' + 'a');
+    for (const char letter : {suffix, small})
+        if (const Channel* c = image.find(before + letter)) return c;
+    if (!layer.empty() && suffix >= 'X' && suffix <= 'Z')
+        return image.find(std::string(layer) + small);
     return nullptr;
 }
 
@@ -123,8 +128,11 @@ FoundLayers find_layers(const Image& image, const LayerNaming& naming, const std
     FoundLayers found;
     const auto color = search(image, naming.color, kColor, "color", file);
     if (!color)
-        throw Error(ErrorKind::usage,
-                    file + ": expected the channels R, G, B; the layers are " + layers_of(image));
+        throw Error(ErrorKind::usage, OptionName{"color"},
+                    file +
+                        " has no channels R, G, B; expected the name of the layer with the "
+                        "noisy colour, of " +
+                        layers_of(image));
     found.color = *color;
     found.variance = search(image, naming.variance, kVariance, "variance", file);
     found.albedo = search(image, naming.albedo, kAlbedo, "albedo", file);

@@ -34,7 +34,8 @@ struct FoundLayers {
 };
 
 /// Finds the layers by the names that pbrt-v4 ("gbuffer" film), Mitsuba 3 ("aov" integrator),
-/// Cycles (passes of multilayer files) and covtrace write, after restore_layer_names; where an
+/// Cycles (passes of multilayer files) and covtrace write, after restore_layer_names, and by those
+/// that Arnold, RenderMan and V-Ray call what their own denoisers read; where an
 /// image has its noisy pixels beside denoised ones, those are the colour. `file` names the image in
 /// errors. Throws Error(usage) where there is no colour, or where a layer that was named is missing
 /// or has the wrong number of channels; the message lists the layers that there are.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 namespace covtrace {
 
@@ -75,6 +76,21 @@ std::string name_from_blender(const std::string& pass) {
     return translate(pass, kBlender, true).value_or(pass);
 }
 
+/// The view layer of a file of Blender's with its dot, empty in other files: the first that has
+/// features, or else the first that is not the compositor's. A file's first part, mostly Combined,
+/// has no layer's name, which another pass tells.
+std::string view_layer_of(const Image& image) {
+    std::string composite;
+    for (const std::string_view known : {".Denoising Albedo.R", ".Combined.R"})
+        for (const Channel& c : image.channels) {
+            if (!c.name.ends_with(known)) continue;
+            std::string layer = c.name.substr(0, c.name.size() - known.size() + 1);
+            if (layer != "Composite.") return layer;
+            composite = std::move(layer);
+        }
+    return composite;
+}
+
 }  // namespace
 
 void rename_layers(Image& image, LayerNames names) {
@@ -89,16 +105,10 @@ void restore_layer_names(Image& image) {
         for (Channel& c : image.channels) c.name = translate(c.name, kPbrt, true).value_or(c.name);
         return;
     }
-    // A file's first part, mostly Combined, has no layer's name: that is found by another pass
-    for (const std::string_view known : {".Combined.R", ".Denoising Albedo.R"})
-        for (const Channel& first : image.channels) {
-            if (!first.name.ends_with(known)) continue;
-            const std::string layer = first.name.substr(0, first.name.size() - known.size() + 1);
-            for (Channel& c : image.channels)
-                if (c.name.starts_with(layer))
-                    c.name = name_from_blender(c.name.substr(layer.size()));
-            return;
-        }
+    const std::string layer = view_layer_of(image);
+    if (layer.empty()) return;
+    for (Channel& c : image.channels)
+        if (c.name.starts_with(layer)) c.name = name_from_blender(c.name.substr(layer.size()));
 }
 
 }  // namespace covtrace

@@ -223,6 +223,13 @@ std::string message_of(const std::vector<NamedImage>& images, const DenoiseOptio
     return "";
 }
 
+TEST(Denoise, LeavesBlackFramesBlack) {
+    const std::vector<NamedImage> black{{"a.exr", image_with({"R", "G", "B"}, 32, 24)},
+                                        {"b.exr", image_with({"R", "G", "B"}, 32, 24)}};
+    for (const Channel& c : denoise(black).image.channels)
+        for (const float v : c.values) EXPECT_EQ(v, 0) << c.name;
+}
+
 TEST(Denoise, RefusesWhatCannotTellItsNoise) {
     std::vector<NamedImage> one{{"a.exr", noisy_image({})}};
     std::vector<NamedImage> same{{"a.exr", noisy_image({})}, {"b.exr", noisy_image({})}};

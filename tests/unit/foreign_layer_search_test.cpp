@@ -126,6 +126,50 @@ TEST(LayerSearch, KnowsCycles) {
     EXPECT_EQ(find_layers(image, {}, "a").samples_unit, 128);
 }
 
+TEST(LayerSearch, TakesTheViewLayerBesideTheCompositorsImage) {
+    const std::vector<std::string> features{"Denoising Albedo.R", "Denoising Albedo.G",
+                                            "Denoising Albedo.B", "Denoising Depth.Z"};
+    std::vector<std::string> names;
+    for (const char* layer : {"Composite.", "Background.", "Scene."})
+        for (const char* c : {"Combined.R", "Combined.G", "Combined.B"})
+            names.push_back(std::string(layer) + c);
+    Image plain = image_with(names);
+    for (const std::string& f : features) names.push_back("Scene." + f);
+    Image image = image_with(names);
+    const auto colour = [](Image& of, const std::string& layer) {
+        for (Channel& c : of.channels)
+            c.values.assign(c.values.size(), c.name.starts_with(layer) ? 1.0f : 0.0f);
+        restore_layer_names(of);
+        return find_layers(of, {}, "a").color[0]->values[0];
+    };
+    EXPECT_EQ(colour(image, "Scene."), 1);
+    EXPECT_EQ(name_of(find_layers(image, {}, "a").albedo), "albedo.R albedo.G albedo.B");
+    EXPECT_EQ(colour(plain, "Background."), 1);
+    Image alone =
+        image_with({"Composite.Combined.R", "Composite.Combined.G", "Composite.Combined.B"});
+    EXPECT_EQ(colour(alone, "Composite."), 1);
+}
+
+TEST(LayerSearch, KnowsWhatOtherDenoisersRead) {
+    const Names arnold = found_in(image_with({"R", "G", "B", "denoise_albedo.R", "denoise_albedo.G",
+                                              "denoise_albedo.B", "N.X", "N.Y", "N.Z", "Z"}));
+    EXPECT_EQ(arnold.albedo, "denoise_albedo.R denoise_albedo.G denoise_albedo.B");
+    const Names renderman =
+        found_in(image_with({"Ci.r", "Ci.g", "Ci.b", "a", "albedo.r", "albedo.g", "albedo.b",
+                             "normal.x", "normal.y", "normal.z", "z"}));
+    EXPECT_EQ(renderman.color, "Ci.r Ci.g Ci.b");
+    EXPECT_EQ(renderman.albedo, "albedo.r albedo.g albedo.b");
+    EXPECT_EQ(renderman.normal, "normal.x normal.y normal.z");
+    EXPECT_EQ(renderman.depth, "z");
+    const Names vray = found_in(
+        image_with({"R", "G", "B", "VRayDiffuseFilter.R", "VRayDiffuseFilter.G",
+                    "VRayDiffuseFilter.B", "VRayNormals.X", "VRayNormals.Y", "VRayNormals.Z",
+                    "VRayZDepth.Z", "VRayCryptomatte00.R", "VRayCryptomatte00.G"}));
+    EXPECT_EQ(vray.albedo, "VRayDiffuseFilter.R VRayDiffuseFilter.G VRayDiffuseFilter.B");
+    EXPECT_EQ(vray.normal, "VRayNormals.X VRayNormals.Y VRayNormals.Z");
+    EXPECT_EQ(vray.depth, "VRayZDepth.Z");
+}
+
 TEST(LayerSearch, KnowsCyclesInParts) {
     // Each pass is a part of the file that is named by it; the reader leaves out the first's name.
     const Names names =
@@ -178,7 +222,8 @@ TEST(LayerSearch, RefusesLayersThatAreMissing) {
               "depth: a.exr has no layer 'P' with one channel, or with X, Y, Z; there are B, G, P, "
               "R, u");
     EXPECT_EQ(message_of(image_with({"Y"}), {}),
-              "a.exr: expected the channels R, G, B; the layers are Y");
+              "color: a.exr has no channels R, G, B; expected the name of the layer with the noisy "
+              "colour, of Y");
     EXPECT_NE(message_of(image, {.color = "none"}), "");
 }
 
