@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -73,6 +74,8 @@ void write_comparison(const CompareArguments& a, const Image& image, const Image
                                  format_number(c.mean_ratio[1]), format_number(c.mean_ratio[2]))},
                     {"mean A / mean B by brightness, darkest first",
                      fmt::format("{}", fmt::join(deciles, " "))}};
+    if (c.nonfinite > 0)
+        report.facts.push_back({"values that are not finite", std::to_string(c.nonfinite)});
     write_report_file(report, a.report);
 }
 

@@ -146,6 +146,10 @@ class Compare(CliTest):
         self.assertEqual(found["nonfinite"], 2)
         self.assertEqual(found["mse"], 0)
         self.assertEqual(found["decile_ratio"], [None] * 9 + [1])  # a single block
+        page = self.folder / "page.html"
+        for image, is_told in ((path, True), (self.image, False)):
+            self.run_program("compare", image, image, "--report", page)
+            self.assertEqual("values that are not finite" in page.read_text(), is_told)
 
     def test_text_has_the_same_names(self):
         result = self.run_program("compare", self.image, self.reference)
