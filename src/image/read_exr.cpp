@@ -14,6 +14,8 @@
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfVecAttribute.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <new>
 #include <set>
 
@@ -83,8 +85,6 @@ class PartReader {
     void check(const Imf::Header& header) const {
         if (header.hasType() && !Imf::isImage(header.type()))
             throw DecodeError("deep images are not supported");
-        if (from_imath(header.dataWindow()) != image_.data)
-            throw DecodeError("its parts have different data windows");
         for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
             if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
                 throw DecodeError(std::string("the subsampled channel '") + c.name() +
@@ -101,11 +101,13 @@ class PartReader {
     }
 
     /// The channels of part `index`, in the order of the file; those that are not `wanted` have no
-    /// values.
+    /// values. Where a part has a smaller window than the image, as renderers cut parts to what is
+    /// not black, its pixels outside of it are 0.
     std::vector<Channel> read(Imf::MultiPartInputFile& exr, int index,
                               const std::set<std::string>& wanted) const {
         const Imf::Header& header = exr.header(index);
-        const int width = image_.width(), height = image_.height();
+        const PixelBounds window = from_imath(header.dataWindow());
+        const int width = window.width(), height = window.height();
         std::vector<Channel> channels;
         Imf::FrameBuffer frame;
         for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
@@ -114,7 +116,7 @@ class PartReader {
             if (!wanted.contains(name)) continue;
             // The values grow band by band, so that a short file costs no more memory than it has
             // pixels.
-            values.reserve(image_.pixel_count());
+            values.reserve(size_t(width) * size_t(height));
             frame.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(),
                                                     sizeof(float), size_t(width) * sizeof(float)));
         }
@@ -127,8 +129,11 @@ class PartReader {
             for (Channel& channel : channels)
                 if (wanted.contains(channel.name))
                     channel.values.resize(size_t(end) * size_t(width));
-            part.readPixels(image_.data.y0 + row, image_.data.y0 + end - 1);
+            part.readPixels(window.y0 + row, window.y0 + end - 1);
         }
+        if (window != image_.data)
+            for (Channel& channel : channels)
+                if (wanted.contains(channel.name)) channel.values = placed(channel.values, window);
         return channels;
     }
 
@@ -141,6 +146,18 @@ class PartReader {
     }
 
   private:
+    /// The values of a part's window as those of the whole image.
+    std::vector<float> placed(const std::vector<float>& values, const PixelBounds& window) const {
+        std::vector<float> whole(image_.pixel_count());
+        const auto width = size_t(window.width());
+        for (size_t row = 0; row < size_t(window.height()); ++row)
+            std::copy_n(values.begin() + std::ptrdiff_t(row * width), width,
+                        whole.begin() + std::ptrdiff_t((size_t(window.y0 - image_.data.y0) + row) *
+                                                           size_t(image_.width()) +
+                                                       size_t(window.x0 - image_.data.x0)));
+        return whole;
+    }
+
     const Image& image_;
 };
 
@@ -152,16 +169,27 @@ constexpr int64_t kMostPixelBytesPerByte = int64_t(1) << 20;
 /// Largest coordinate of a window, so that sums and differences of coordinates stay in an int.
 constexpr int kLargestCoordinate = 1 << 29;
 
+/// The window of a header. Errors: DecodeError where it is out of all bounds.
+PixelBounds checked_window(const Imath::Box2i& box) {
+    for (int coordinate : {box.min.x, box.min.y, box.max.x, box.max.y})
+        if (std::abs(int64_t(coordinate)) > kLargestCoordinate)
+            throw DecodeError("its windows are out of all bounds");
+    return from_imath(box);
+}
+
 Image read_parts(const std::filesystem::path& file, const ChannelChoice& choose) {
     check_exr_attribute_sizes(file);
     Imf::MultiPartInputFile exr(file.c_str(), 0);
     Image image;
-    for (const Imath::Box2i& box : {exr.header(0).dataWindow(), exr.header(0).displayWindow()})
-        for (int coordinate : {box.min.x, box.min.y, box.max.x, box.max.y})
-            if (std::abs(int64_t(coordinate)) > kLargestCoordinate)
-                throw DecodeError("its windows are out of all bounds");
-    image.data = from_imath(exr.header(0).dataWindow());
-    image.display = from_imath(exr.header(0).displayWindow());
+    image.data = checked_window(exr.header(0).dataWindow());
+    image.display = checked_window(exr.header(0).displayWindow());
+    bool is_one_window = true;
+    for (int i = 1; i < exr.parts(); ++i) {
+        const PixelBounds window = checked_window(exr.header(i).dataWindow());
+        is_one_window = is_one_window && window == image.data;
+        image.data = {std::min(image.data.x0, window.x0), std::min(image.data.y0, window.y0),
+                      std::max(image.data.x1, window.x1), std::max(image.data.y1, window.y1)};
+    }
     image.metadata = read_metadata(exr.header(0));
 
     const PartReader reader(image);
@@ -186,7 +214,7 @@ Image read_parts(const std::filesystem::path& file, const ChannelChoice& choose)
     const std::vector<std::string> chosen = choose ? choose(names) : names;
     const std::set<std::string> wanted(chosen.begin(), chosen.end());
     const MemoryReservation room(
-        image.pixel_count() * wanted.size() * sizeof(float),
+        image.pixel_count() * (wanted.size() + (is_one_window ? 0 : 1)) * sizeof(float),
         std::to_string(image.width()) + "x" + std::to_string(image.height()) + " pixels");
     for (int i = 0; i < exr.parts(); ++i)
         for (Channel& channel : reader.read(exr, i, wanted))

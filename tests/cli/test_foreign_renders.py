@@ -84,6 +84,19 @@ class ForeignRenders(CliTest):
             subprocess.run(command, cwd=self.folder, check=True)
         self.assert_cleaner("1.exr", "2.exr", "cycles")
 
+    def test_parts_with_windows_of_their_own(self):
+        def denoised(name, window):
+            for k in (1, 2):
+                passes = [[RENDERS / f"mitsuba-{k}.exr", "--ch", channels, "--attrib", "oiio:subimagename", part]
+                          for part, channels in (("beauty", "R,G,B,nn.X,nn.Y,nn.Z,dd.T"), ("albedo", "R=albedo.R,G=albedo.G,B=albedo.B"))]
+                command = ["oiiotool", *passes[0], *passes[1], *window, "--siappend", "-o", f"{name}{k}.exr"]
+                subprocess.run(command, cwd=self.folder, check=True)
+            return self.denoised(f"{name}1.exr", f"{name}2.exr")[0]
+
+        cut, whole = denoised("cut", ["--crop", "40x20+4+6"]), denoised("whole", ["--crop", "40x20+4+6", "--croptofull"])
+        self.assertEqual(cut.data_window, (0, 0, 48, 32))
+        self.assertEqual(cut.pixels, whole.pixels)
+
 
 if __name__ == "__main__":
     unittest.main()
