@@ -11,6 +11,7 @@
 #include "foreign/image_halves.h"
 #include "foreign/noise_correlation.h"
 #include "foreign/phased_denoiser.h"
+#include "image/exr_names.h"
 #include "image/finite_pixels.h"
 #include "reconstruction/hybrid.h"
 #include "reconstruction/luminance.h"
@@ -104,7 +105,7 @@ void add(Image& image, std::string name, std::vector<float> values) {
 /// Takes the camera and the colour space over, which are those of the picture; what else files tell
 /// is of one render.
 void take_metadata(const Image& from, Image& to) {
-    for (const char* key : {kChromaticities, "worldToCamera", "worldToNDC"})
+    for (const char* key : {kChromaticities, kPixelAspectRatio, "worldToCamera", "worldToNDC"})
         if (const auto it = from.metadata.find(key); it != from.metadata.end())
             to.metadata.insert(*it);
 }

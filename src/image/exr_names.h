@@ -10,6 +10,9 @@ namespace covtrace {
 /// Longest name of a channel or an attribute.
 inline constexpr size_t kExrNameLimit = 255;
 
+/// The width of a pixel over its height, which an image has as metadata where it is not 1.
+inline constexpr const char* kPixelAspectRatio = "pixelAspectRatio";
+
 /// Whether an attribute is one that readers interpret with a type of their own (OpenEXR, "Standard
 /// Attributes"): such ones are neither read as metadata nor written from it. "name", "type",
 /// "version" and "chunkCount" are reserved for files with several parts, and OpenEXR's own reader

@@ -74,6 +74,7 @@ Metadata read_metadata(const Imf::Header& header) {
         if (!is_structural_exr_name(it.name()) && convert(it.attribute(), value))
             metadata.emplace(it.name(), std::move(value));
     }
+    if (header.pixelAspectRatio() != 1) metadata[kPixelAspectRatio] = header.pixelAspectRatio();
     return metadata;
 }
 

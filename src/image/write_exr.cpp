@@ -42,6 +42,13 @@ void require(bool condition, const std::filesystem::path& file, const std::strin
         throw Error(ErrorKind::internal, "cannot write '" + file.string() + "': " + problem);
 }
 
+/// A number of metadata; 0 for what is none.
+float number_of(const MetadataValue& value) {
+    if (const auto* i = std::get_if<int>(&value)) return float(*i);
+    const auto* f = std::get_if<float>(&value);
+    return f ? *f : 0;
+}
+
 void check_form(const Image& image, const std::filesystem::path& file) {
     require(!image.data.empty(), file, "the image has no pixels");
     require(!image.display.empty(), file, "the display window is empty");
@@ -56,6 +63,13 @@ void check_form(const Image& image, const std::filesystem::path& file) {
                 "channel '" + channel.name + "' has the wrong number of values");
     }
     for (const auto& [name, value] : image.metadata) {
+        if (name == kPixelAspectRatio) {
+            // The limits are OpenEXR's own; what is no number is 0
+            const float ratio = number_of(value);
+            require(ratio >= 1e-6f && ratio <= 1e6f, file,
+                    "'" + name + "' is no number from 1e-6 to 1e6");
+            continue;
+        }
         require(!name.empty() && name.size() <= kExrNameLimit, file,
                 "'" + name + "' is no name for metadata");
         require(!is_structural_exr_name(name), file,
@@ -97,7 +111,9 @@ Imf::Header make_header(const Image& image) {
     for (const Channel& channel : image.channels)
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
     for (const auto& [name, value] : image.metadata) {
-        if (const auto* i = std::get_if<int>(&value))
+        if (name == kPixelAspectRatio)
+            header.pixelAspectRatio() = number_of(value);
+        else if (const auto* i = std::get_if<int>(&value))
             header.insert(name, Imf::IntAttribute(*i));
         else if (const auto* f = std::get_if<float>(&value))
             header.insert(name, Imf::FloatAttribute(*f));

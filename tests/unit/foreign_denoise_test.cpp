@@ -158,12 +158,14 @@ TEST(Denoise, KeepsWindowsAlphaAndCamera) {
         image.add_channel("A").values.assign(image.pixel_count(), k == 0 ? 1 : 0.5f);
         image.metadata["worldToCamera"] = std::vector<float>(16, 1);
         image.metadata["samplesPerPixel"] = 4;
+        image.metadata["pixelAspectRatio"] = 2.0f;
         image.metadata["renderTimeSeconds"] = 3.0f;
     }
     const Image result = denoise(images).image;
     EXPECT_EQ(result.display, images[0].image.display);
     EXPECT_EQ(result.find("A")->values[7], 0.75f);
     EXPECT_TRUE(result.metadata.contains("worldToCamera"));
+    EXPECT_EQ(std::get<float>(result.metadata.at("pixelAspectRatio")), 2);
     EXPECT_FALSE(result.metadata.contains("renderTimeSeconds"));
     EXPECT_EQ(std::get<float>(result.metadata.at("spp")), 8);
 }

@@ -33,6 +33,7 @@ TEST(Exr, KeepsBitsNamesWindowsAndMetadata) {
     image.metadata["one"] = std::vector<float>{1};
     image.metadata[kChromaticities] =
         std::vector<float>{0.708f, 0.292f, 0.17f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.329f};
+    image.metadata["pixelAspectRatio"] = 2.0f;
     write_exr(image, file);
 
     const Image back = read_image(file);
@@ -99,6 +100,9 @@ TEST(Exr, RefusesImagesThatAreNotWellFormed) {
     image = good;
     image.metadata["dataWindow"] = 3;
     expect_refused(image, "'dataWindow'");
+    image = good;
+    image.metadata["pixelAspectRatio"] = 0.0f;
+    expect_refused(image, "'pixelAspectRatio' is no number");
 }
 
 TEST(Image, FindsChannelsAndColors) {
