@@ -6,6 +6,7 @@
 #include "core/display_exposure.h"
 #include "core/hash.h"
 #include "core/vec.h"
+#include "reconstruction/luminance.h"
 
 namespace covtrace {
 
@@ -103,6 +104,42 @@ ColorPlanes variance_of(const SampledImage& s, const Plane& count) {
     return variance;
 }
 
+/// Whether a negative pixel of `half` says nothing of the picture: `other` is far from it, as the
+/// two differ nowhere around. Where a filter has negative lobes, what is bright stands beside it
+/// and differs as much, and noise that falls below 0 is no farther than other noise.
+bool is_lone_negative(const Plane& half, const Plane& other, int x, int y) {
+    constexpr int kAround = 2;
+    constexpr float kFar = 8;  // times the deviation around: no noise gets there
+    if (other(x, y) < 0) return false;
+    float sum = 0;
+    int count = 0;
+    for (int qy = std::max(0, y - kAround); qy <= std::min(half.height - 1, y + kAround); ++qy)
+        for (int qx = std::max(0, x - kAround); qx <= std::min(half.width - 1, x + kAround); ++qx) {
+            if (qx == x && qy == y) continue;
+            sum += sqr(half(qx, qy) - other(qx, qy));
+            ++count;
+        }
+    return sqr(half(x, y) - other(x, y)) * float(count) > sqr(kFar) * sum;
+}
+
+/// Gives lone negative pixels of a half the other's colour, and no samples. A network takes
+/// negative light for black, and what is black in an even surrounding for a detail.
+void replace_lone_negatives(Halves& halves) {
+    const std::array<Plane, 2> bright{luminance(halves[0].color), luminance(halves[1].color)};
+    for (size_t k = 0; k < 2; ++k) {
+        const HalfBuffer& other = halves[1 - k];
+        for (int y = 0; y < bright[k].height; ++y)
+            for (int x = 0; x < bright[k].width; ++x) {
+                const size_t i = size_t(y) * size_t(bright[k].width) + size_t(x);
+                if (!(bright[k][i] < 0) || !(other.count[i] > 0) ||
+                    !is_lone_negative(bright[k], bright[1 - k], x, y))
+                    continue;
+                halves[k].count[i] = 0;
+                for (size_t c = 0; c < 3; ++c) halves[k].color[c][i] = other.color[c][i];
+            }
+    }
+}
+
 float random_sign(size_t pixel) {
     return hash_combine(0x68616c766573, pixel) >> 63 ? 1.0f : -1.0f;
 }
@@ -119,12 +156,13 @@ int lost_pixels(const Halves& halves) {
 ImageHalves halves_of_two(const SampledImage& a, const SampledImage& b) {
     ImageHalves result{{half_of(a), half_of(b)}};
     Halves& halves = result.halves;
+    result.lost = lost_pixels(halves);
+    replace_lone_negatives(halves);
     set_variance_from_difference(halves);
     if (a.layers.variance && b.layers.variance) {
         halves[0].color_variance = variance_of(a, halves[0].count);
         halves[1].color_variance = variance_of(b, halves[1].count);
     }
-    result.lost = lost_pixels(halves);
     result.are_samples_known = are_samples_known(a) && are_samples_known(b);
     return result;
 }

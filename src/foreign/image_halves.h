@@ -26,7 +26,8 @@ struct ImageHalves {
 
 /// Makes halves of two renders of one picture with noise of their own. Variances are those of the
 /// images where both have them, else those that the difference suggests. Pixels whose colour,
-/// albedo or normal is not finite count as lost samples. Both images have the same size and
+/// albedo or normal is not finite count as lost samples; what is negative in one image alone has no
+/// samples either, and the other's colour. Both images have the same size and
 /// exposure.
 ImageHalves halves_of_two(const SampledImage& a, const SampledImage& b);
 

@@ -49,6 +49,28 @@ TEST(ImageHalves, HaveNoSamplesWherePixelsAreNotFinite) {
     EXPECT_NEAR(made.halves[0].color[1][17], truth(17, 0), 0.5f);  // filled from around
 }
 
+TEST(ImageHalves, LoneNegativePixelsAreTheOthers) {
+    Image a = image_with({"R", "G", "B"}, 24, 8), b = a;
+    for (Image* image : {&a, &b})
+        for (Channel& c : image->channels) c.values.assign(c.values.size(), 0.5f);
+    const auto set = [](Image& image, size_t i, float value) {
+        for (Channel& c : image.channels) c.values[i] = value;
+    };
+    const size_t row = 3 * 24, lone = row + 3, both = row + 9, lobe = row + 16;
+    set(a, lone, -0.4f);
+    set(a, both, -1), set(b, both, -0.1f);  // both saw that it is dark here
+    set(a, lobe, -1), set(a, lobe + 2, 8);  // beside a bright pixel
+    const ImageHalves made = halves_of_two(sampled(a), sampled(b));
+    EXPECT_EQ(made.lost, 0);
+    EXPECT_EQ(made.halves[0].count[lone], 0);
+    EXPECT_EQ(made.halves[0].color[1][lone], 0.5f);
+    for (const size_t i : {both, lobe}) {
+        EXPECT_EQ(made.halves[0].count[i], 8) << i;
+        EXPECT_EQ(made.halves[0].color[1][i], -1) << i;
+    }
+    EXPECT_EQ(made.halves[1].color[1][both], -0.1f);
+}
+
 TEST(ImageHalves, TakeTheVarianceThatTheDifferenceSuggests) {
     Image a = noisy_image({.seed = 1}), b = noisy_image({.seed = 2});
     for (Image* image : {&a, &b})
