@@ -18,6 +18,84 @@ from .scene_warnings import warn
 
 Array = NDArray[numpy.float32]
 
+#: The channels of our own layers that are no colours, in the order of their arrays.
+_CHANNELS = {**dict.fromkeys(("N", "Ng", "P", "featureN"), ("X", "Y", "Z")), **dict.fromkeys(("uv", "dz"), ("X", "Y")),
+             **dict.fromkeys(("filter", "spectrum", "inviewfilter"), ("xx", "xy", "yy")),
+             **dict.fromkeys(("cov", "scatteredcov"), tuple(f"{i}{j}" for i in range(5) for j in range(i, 5)))}
+
+
+def _layer_channels(name: str, values: ArrayLike) -> list[tuple[str, NDArray[Any]]]:
+    """The channels of a layer by their full names: of an array of more than one the letters of that layer,
+    or else those of a colour."""
+    values = numpy.asarray(values)
+    letters = _CHANNELS.get(name, ("R", "G", "B", "A"))
+    count = values.shape[2] if values.ndim == 3 else 0
+    if count and (count == len(letters) or (count == 3 and name not in _CHANNELS)):
+        return [(f"{name}.{letters[c]}" if name else letters[c], values[:, :, c]) for c in range(count)]
+    return [(name, values)]
+
+
+def _plain(value: Any) -> Any:
+    """A value of metadata without numpy's types, which would lose what is behind the point."""
+    if isinstance(value, numpy.generic):
+        return value.item()
+    return value.tolist() if isinstance(value, numpy.ndarray) else value
+
+
+class _Metadata(dict[str, Any]):
+    """The metadata of planes. What is changed here is theirs, too."""
+
+    def __init__(self, planes: _covtrace.Planes) -> None:
+        super().__init__(planes.metadata)
+        self._planes = planes
+
+    def _replace(self, entries: Mapping[str, Any]) -> None:
+        plain = {name: _plain(value) for name, value in entries.items()}
+        try:
+            self._planes.metadata = plain
+        except TypeError:
+            refuse("metadata", plain, "names with numbers, texts and lists of numbers")
+        super().clear()
+        super().update(self._planes.metadata)
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        self._replace({**self, name: value})
+
+    def __delitem__(self, name: str) -> None:
+        rest = dict(self)
+        del rest[name]
+        self._replace(rest)
+
+    def update(self, *entries: Any, **more: Any) -> None:
+        self._replace({**self, **dict(*entries, **more)})
+
+    def __ior__(self, entries: Any) -> _Metadata:
+        self.update(entries)
+        return self
+
+    def setdefault(self, name: str, default: Any = None) -> Any:
+        if name not in self:
+            self[name] = default
+        return self[name]
+
+    def pop(self, name: str, *default: Any) -> Any:
+        value = dict(self).pop(name, *default)
+        if name in self:
+            del self[name]
+        return value
+
+    def popitem(self) -> tuple[str, Any]:
+        rest = dict(self)
+        last = rest.popitem()
+        self._replace(rest)
+        return last
+
+    def clear(self) -> None:
+        self._replace({})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (dict(self),)
+
 
 class Image:
     """A rendered or loaded image.
@@ -31,7 +109,7 @@ class Image:
     layers: name -> (height, width, n), or (height, width) for layers of one channel such as "Z",
         "samples", "error"; the delivered image is layer "".
     channels: name -> (height, width): "R", "raw.R", "cov.00", ...
-    metadata: the entries of the file's header.
+    metadata: the entries of the file's header, a dictionary; what is set there is written.
     complete: False where the render was stopped before its end.
     statistics: counters, seconds per phase, memory; empty for images that were read.
     """
@@ -44,6 +122,7 @@ class Image:
     def __init__(self, planes: _covtrace.Planes, complete: bool | None = None,
                  statistics: dict[str, Any] | None = None) -> None:
         self._planes = planes
+        self._metadata = _Metadata(planes)
         self.layers = MappingProxyType(planes.layers())
         self.channels = MappingProxyType(planes.channels())
         self.statistics = statistics or {}
@@ -62,7 +141,9 @@ class Image:
                     layers: Mapping[str, ArrayLike | Mapping[str, ArrayLike]] | None = None,
                     metadata: Mapping[str, Any] | None = None) -> Image:
         """Makes an image of arrays (copied): `rgb` (height, width, 3), `layers` name -> (height,
-        width) or {channel name: (height, width)} such as {"N": {"X": x, "Y": y, "Z": z}}."""
+        width), (height, width, 3) or {channel name: (height, width)} such as {"N": {"X": x, "Y": y,
+        "Z": z}}. Channels of arrays are X, Y, Z in "N", "Ng" and "P", and R, G, B in layers that are
+        not known."""
         channels = []
         if rgb is not None:
             rgb = numpy.asarray(rgb, dtype=numpy.float32)
@@ -73,10 +154,9 @@ class Image:
             if isinstance(values, Mapping):
                 channels += [(f"{name}.{c}", numpy.asarray(v)) for c, v in values.items()]
             else:
-                channels.append((name, numpy.asarray(values)))
+                channels += _layer_channels(name, values)
         planes = _covtrace.Planes.from_channels(channels)
-        if metadata:
-            planes.metadata = dict(metadata)
+        _Metadata(planes).update(metadata or {})
         return cls(planes)
 
     def __getitem__(self, name: str) -> Array:
@@ -107,6 +187,10 @@ class Image:
     def items(self) -> ItemsView[str, Array]:
         return self.layers.items()
 
+    def get(self, name: str, default: Any = None) -> Any:
+        """A layer or channel, or else `default`."""
+        return self[name] if name in self else default
+
     def __array__(self, dtype: DTypeLike = None, copy: bool | None = None) -> NDArray[Any]:
         """The delivered image, (height, width, 3): a view, unless another type or a copy is asked
         for."""
@@ -115,7 +199,7 @@ class Image:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (list(self.channels.items()), self.data_window, self.display_window,
-                           self.metadata, self.complete, self.statistics)
+                           dict(self.metadata), self.complete, self.statistics)
 
     def _repr_png_(self) -> bytes:
         """The picture that notebooks show: sRGB, without exposure."""
@@ -148,7 +232,11 @@ class Image:
 
     @property
     def metadata(self) -> dict[str, Any]:
-        return self._planes.metadata
+        return self._metadata
+
+    @metadata.setter
+    def metadata(self, entries: Mapping[str, Any]) -> None:
+        self._metadata._replace(entries)
 
     @property
     def size(self) -> tuple[int, int]:

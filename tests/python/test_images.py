@@ -1,6 +1,7 @@
 """covtrace.Image and covtrace.compare: files, arrays, layers, measures."""
 
 import copy
+import json
 import pathlib
 import pickle
 import tempfile
@@ -181,6 +182,42 @@ class Images(unittest.TestCase):
         for measure in (c.mse, c.relmse, c.relmse_trimmed, c.relmse_median, c.psnr, c.flip, *c.decile_ratio):
             self.assertTrue(numpy.isnan(measure))
         numpy.testing.assert_array_equal(c.flip_map, numpy.zeros((6, 8)))
+
+    def test_arrays_become_layers_as_they_came(self):
+        rng = numpy.random.default_rng(4)
+        sizes = {"": 3, "N": 3, "albedo": 3, "beauty": 4, "uv": 2, "filter": 3, "cov": 15}
+        given = {name: rng.random((5, 7, n), dtype=numpy.float32) for name, n in sizes.items()} | {"Z": rng.random((5, 7))}
+        image = covtrace.Image.from_arrays(layers=given)
+        for channel in ("R", "N.X", "albedo.R", "beauty.A", "uv.Y", "filter.xy", "cov.44", "Z"):
+            self.assertIn(channel, image.channels)
+        again = covtrace.Image.from_arrays(layers=dict(image.items()))
+        self.assertEqual(list(again.channels), list(image.channels))
+        for name, values in given.items():
+            numpy.testing.assert_array_equal(again[name], values.astype(numpy.float32))
+        self.assertIs(image.get("cov"), image["cov"])
+        self.assertIsNone(image.get("nothing"))
+
+    def test_metadata_is_the_images(self):
+        image = covtrace.Image.from_arrays(numpy.ones((2, 2, 3)), metadata={"gain": numpy.float32(2.5)})
+        self.assertEqual(image.metadata, {"gain": 2.5})
+        metadata = image.metadata
+        metadata["shot"] = "a12"
+        image.metadata.update(take=3, window=numpy.arange(2))
+        metadata |= {"extra": 1}
+        self.assertEqual((metadata.pop("extra"), metadata.pop("extra", None)), (1, None))
+        del image.metadata["gain"]
+        expected = {"shot": "a12", "take": 3, "window": [0, 1]}
+        self.assertEqual(image.metadata, expected)
+        self.assertEqual(pickle.loads(pickle.dumps(image)).metadata, expected)
+        self.assertEqual(json.loads(json.dumps(image.metadata)), expected)
+        with self.assertRaisesRegex(covtrace.UsageError, "metadata is .*; expected names with numbers"):
+            image.metadata["shot"] = object()
+        with tempfile.TemporaryDirectory() as folder:
+            image.write(pathlib.Path(folder) / "a.exr")
+            written = covtrace.Image.read(pathlib.Path(folder) / "a.exr").metadata
+        self.assertEqual({name: written[name] for name in expected}, expected)
+        image.metadata = {"take": 4}
+        self.assertEqual(dict(image._planes.metadata), {"take": 4})
 
     def test_layers_of_a_wrong_shape(self):
         for values in (3.0, [1.0, 2.0], numpy.zeros((2, 2, 2)), numpy.zeros((0, 2))):
