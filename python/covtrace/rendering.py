@@ -165,7 +165,15 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
 
 def _with_images(preview: Callable[[Image], Any] | None) -> Callable[[_covtrace.Planes], Any] | None:
     """The function for the renderer's own planes."""
-    return None if preview is None else lambda planes: preview(Image(planes))
+    return None if preview is None else lambda planes: preview(_image_so_far(planes))
+
+
+def _image_so_far(planes: _covtrace.Planes) -> Image:
+    image = Image(planes, complete=False)
+    image.metadata["complete"] = 0
+    if "samples" in image:
+        image.metadata["spp"] = float(image["samples"].mean())
+    return image
 
 
 def _render(scene: Scene, options: dict[str, Any]) -> Image:

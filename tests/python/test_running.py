@@ -51,6 +51,10 @@ class Running(unittest.TestCase):
         counts = [float(i["samples"].mean()) for i in (*seen, image)]
         self.assertEqual(counts, sorted(counts))
         self.assertLess(counts[0], counts[2])
+        for so_far in seen:
+            self.assertFalse(so_far.complete)
+            self.assertEqual(so_far.metadata["complete"], 0)
+            self.assertAlmostEqual(so_far.metadata["spp"], float(so_far["samples"].mean()), places=3)
         self.assertEqual(seen[0].rgb.shape, (64, 96, 3))
         self.assertAlmostEqual(float(seen[0].rgb.mean() / image.rgb.mean()), 1, delta=0.2)
 
