@@ -31,7 +31,7 @@ class Coefficients:
         return Coefficients(self.scattering + other.scattering, self.absorption + other.absorption, g, self.light + other.light)
 
     def times(self, share):
-        """A share of it, () or (n,)."""
+        """All of it times a factor, () or (n,)."""
         scattering, absorption, light = (part * share[..., None] for part in (self.scattering, self.absorption, self.light))
         return Coefficients(scattering, absorption, self.g, light)
 

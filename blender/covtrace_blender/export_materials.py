@@ -2,6 +2,7 @@
 
 import io
 import math
+import types
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .sums import SumExporter
 
 TRANSPARENT = '"float alpha" 0'
+WITHOUT_MATERIAL = types.SimpleNamespace(name="", name_full="", pass_index=0)  # stands for the one of a volume object that has none
 
 
 class Variant:
@@ -47,15 +49,17 @@ class MaterialExporter(SumExporter):
         self.baker, self.baked = Baker(self.files.source), BakedImages()
         self.known, self.of_objects, self.of_scales, self.interfaces = {}, set(), set(), set()
         self.media_of_boxes = {}  # of what is the same in the same box
-        self.count, self.owner = 0, Owner()
+        self.count, self.owner, self.is_of_volume = 0, Owner(), False
 
-    def variants(self, material, place=None, surface_of=lambda material_name: Surface(), owner=Owner()):
+    def variants(self, material, place=None, surface_of=lambda material_name: Surface(), owner=Owner(), is_of_volume=False):
         """The Variants of a material: one, unless Light Path nodes show it to rays of different kinds as different ones. No
         ray has two of them; one that has none passes.
 
-        place: what it is on, for what hangs on it. surface_of(name of the material): its Surface there; owner: its Owner.
+        place: what it is on, for what hangs on it. surface_of(name of the material): its Surface there; owner: its Owner. is_of_volume:
+        whether that is a volume object, of which nothing is seen but what is within.
         """
         name = material.name_full if material else None
+        self.is_of_volume = is_of_volume
         key = self._key(name, place, owner)
         if key not in self.known:
             self.owner = owner
@@ -68,7 +72,7 @@ class MaterialExporter(SumExporter):
 
     def _key(self, name, place, owner):
         """Equal where a material is the same, by what is known to count for it."""
-        return name, place if name in self.of_objects else None, owner.scale if name in self.of_scales else None
+        return name, self.is_of_volume, place if name in self.of_objects else None, owner.scale if name in self.of_scales else None
 
     def _on(self, surface, material):
         """The Variants on a Surface, all of them on its body where one needs that."""
@@ -93,6 +97,8 @@ class MaterialExporter(SumExporter):
 
     def _variants(self, material):
         self.name = material.name if material else "none"
+        if material is WITHOUT_MATERIAL:
+            return [Variant(RAYS, self._make("interface", []), medium=self._medium(None))]
         if material is None or not material.use_nodes or not material.node_tree:
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
@@ -131,9 +137,9 @@ class MaterialExporter(SumExporter):
         node, _ = self._linked(output.inputs["Surface"]) if output else (None, None)
         volume, _ = self._linked(output.inputs["Volume"]) if output else (None, None)
         medium = self._medium(volume) if volume else ""
-        if volume and (node is None or node.type == "BSDF_TRANSPARENT"):
+        if volume and (node is None or node.type == "BSDF_TRANSPARENT" or self.is_of_volume):
             # A body that is nothing but its volume.
-            if node:
+            if node and not self.is_of_volume:
                 self._tell_of_tint(node)
             return self._make("interface", []), None, "", (), medium, None
         if node is None:

@@ -1,7 +1,6 @@
 """A scene of Blender as a pbrt-v4 file with its meshes and textures in one folder."""
 
 import io
-import math
 import os
 
 import numpy as np
@@ -18,34 +17,33 @@ from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_points import Spheres, spheres
 from .export_volumes import Varying, has_volume
+from .instances import Instances
 from .media import Volumes
 from .node_signature import hangs_on_world
 from .owner import Owner, asks_for_random, random_of
 from .part import Part, write_parts
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
-from .shutter import has_blurred_shape, is_blurred, shutter_times
+from .solid import Box, Solid
 from .texel_density import Placements
 from .uv_ranges import UvRanges
 from .visibility import Visibility
 from .volume_lattice import VolumeSpace
+from .volume_objects import VolumeObjects
 
 CONTENT = "content.pbrt"
 
 SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
-WRITTEN = (*SURFACES, "CURVES", "POINTCLOUD")
+WRITTEN = (*SURFACES, "CURVES", "POINTCLOUD", "VOLUME")
 
 
-class SceneExporter:
+class SceneExporter(Instances):
     """engine: moves the frame; tell(text): is told what takes time."""
 
     def __init__(self, engine, depsgraph, folder, tell=lambda text: None):
-        self.engine, self.depsgraph, self.folder, self.tell = engine, depsgraph, folder, tell
-        self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
-        self.frame = self.scene.frame_current_final
-        self.warnings = []
-        self.camera = SceneCamera(self.scene, depsgraph)
-        self.shutter, self.is_preview, self.still, self.still_shapes = None, False, {}, {}
+        super().__init__(engine, depsgraph, SceneCamera(depsgraph.scene, depsgraph))
+        self.folder, self.tell, self.layer = folder, tell, depsgraph.view_layer_eval
+        self.warnings, self.is_preview = [], False
 
     def warn(self, text):
         if text not in self.warnings:
@@ -54,7 +52,7 @@ class SceneExporter:
     def write(self):
         """The path of a file that holds the scene as its camera sees it."""
         self.warnings += self.camera.left_out()
-        moving, self.shutter = self._look_at_close()
+        moving, self.shutter = self.look_at_close()
         path = os.path.join(self.folder, "scene.pbrt")
         try:
             content = io.StringIO()
@@ -66,7 +64,7 @@ class SceneExporter:
                 out.write(content.getvalue())
         finally:
             if self.shutter:
-                self._go_to(self.frame)
+                self.go_to(self.frame)
         return path
 
     def write_content(self):
@@ -99,71 +97,53 @@ class SceneExporter:
         world = (getattr(self.layer, "world_override", None) or self.scene.world) if self.layer.use_sky else None
         export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview)
 
-    # -- time
-
-    def _look_at_close(self):
-        """Where things are when the shutter closes: (matrices by key, (open, close) in frames); then back to open."""
-        if not self.scene.render.use_motion_blur:
-            return {}, None
-        frame, (opening, closing) = self.frame, shutter_times(self.scene)
-        if not self.camera.is_blurred() or not all(is_blurred(instance) and has_blurred_shape(instance.object) for _, instance in self._instances()):
-            self._go_to(frame + 0.5 * (opening + closing))
-        self.still = {key: instance.matrix_world.copy() for key, instance in self._instances() if not is_blurred(instance)}
-        self.still_shapes = self._shapes(is_blurred=False)
-        self.camera.hold_if_sharp()
-        self._go_to(frame + closing)
-        matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
-        matrices["camera"] = self.camera.matrix()
-        self.closing = self._shapes(is_blurred=True)
-        self._go_to(frame + opening)
-        return matrices, (opening, closing)
-
-    def _shapes(self, is_blurred):
-        """{object's name: where the vertices of its mesh are} of those whose changes of shape are blurred or not."""
-        return {obj.name_full: export_meshes.positions(obj.data) for obj in (instance.object for _, instance in self._instances())
-                if obj.type == "MESH" and has_blurred_shape(obj) == is_blurred and self._is_own(obj)}
-
-    def _is_own(self, obj):
-        """Whether its data is that of the object of its name: geometry nodes place other data under their object's name."""
-        own = obj.original.evaluated_get(self.depsgraph).data
-        return own is not None and own.as_pointer() == obj.data.as_pointer()
-
-    def _go_to(self, time):
-        frame = math.floor(time)
-        self.engine.frame_set(frame, subframe=time - frame)
-
-    def _instances(self):
-        for instance in self.depsgraph.object_instances:
-            if instance.show_self or instance.show_particles and instance.object.particle_systems:
-                parent = instance.parent.name_full if instance.parent else ""
-                yield (instance.object.name_full, parent, tuple(instance.persistent_id)), instance
-
     # -- objects
 
     def _find_volumes(self):
         """The Volumes of all instances that are written."""
         found = Volumes()
-        for _, instance in self._instances():
+        for _, instance in self.instances():
             obj = instance.object
             slots = [slot for slot, material in enumerate(self._materials(obj)) if has_volume(material)] \
                 if obj.type == "MESH" and instance.show_self and self.layer.use_solid and Body.is_of(obj.data) else []
-            hidden = self.visibility.hidden(instance) if slots else None
+            hidden = self.visibility.hidden(instance) if slots or obj.type == "VOLUME" else None
             if hidden is None:
                 continue
-            self.random, mesh = self._random_of(instance), obj.to_mesh()
+            self.random = self._random_of(instance)
+            if obj.type == "VOLUME":
+                variants, box = self._volume_variants(obj)
+                self._add_volume(found, instance, variants, hidden, lambda: box)
+                continue
+            mesh = obj.to_mesh()
             self._displace(obj, mesh)
             for slot in slots:
-                filled = [v for v in self._variants(obj, slot, mesh) if v.medium and set(v.rays) - hidden]
-                if filled:
-                    rays = {ray for variant in filled for ray in variant.rays} - hidden
-                    found.add(obj, mesh, instance.matrix_world, self.materials.media.placed(filled[0].medium, instance.matrix_world), rays)
+                if self._add_volume(found, instance, self._variants(obj, slot, mesh), hidden, lambda: Solid(mesh)):
                     break
             obj.to_mesh_clear()
         return found
 
+    def _add_volume(self, found, instance, variants, hidden, make_solid):
+        """Adds an instance to Volumes, where one of these Variants has a medium; tells whether."""
+        filled = [variant for variant in variants if variant.medium and set(variant.rays) - hidden]
+        if filled:
+            rays = {ray for variant in filled for ray in variant.rays} - hidden
+            medium = self.materials.media.placed(filled[0].medium, instance.matrix_world)
+            found.add(instance.object, make_solid, instance.matrix_world, medium, rays)
+        return bool(filled)
+
+    def _volume_variants(self, obj):
+        """(the Variants of the material of a volume object, the Box around it); none where nothing of it is seen."""
+        material = self.volume_objects.material(self._materials(obj)) if self.layer.use_volumes else None
+        space = material and self.volume_objects.space(obj, material)
+        if not space:
+            return [], None
+        owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
+        variants = self.materials.variants(material, (*Placements.key(obj), self.random), lambda name: Surface(space_of=lambda: space), owner, True)
+        return [variant for variant in variants if variant.medium], Box(space.low, space.high)
+
     def _write_objects(self, moving):
         shared, exported = {}, {}
-        for key, instance in self._instances():
+        for key, instance in self.instances():
             obj = instance.object
             hidden = self.visibility.hidden(instance)
             if hidden is None:
@@ -179,7 +159,8 @@ class SceneExporter:
                 if abs(matrix.determinant()) < 1e-30:
                     continue
                 if shown not in exported:
-                    exported[shown] = (self._export_parts(obj) if instance.show_self and self.layer.use_solid else []) + (
+                    is_shown = instance.show_self and (self.layer.use_solid or obj.type == "VOLUME")
+                    exported[shown] = (self._export_parts(obj) if is_shown else []) + (
                         self._export_strands(obj) if instance.show_particles and self.layer.use_strand else [])
                 parts = [part for part in exported[shown] if set(part.variant.rays) - hidden]
                 if not parts:
@@ -200,8 +181,8 @@ class SceneExporter:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
                     write_parts(self.out, media, parts, hidden, around, matrix)
                     self.out.write("AttributeEnd\n")
-            elif obj.type in ("VOLUME", "GPENCIL"):
-                self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
+            elif obj.type in ("GPENCIL", "GREASEPENCIL"):
+                self.warn(f"object '{obj.name}' is grease pencil, which is not rendered")
         self.visibility.tell(self.warn)
 
     def _write_lamp(self, obj, matrix, end, hidden):
@@ -226,10 +207,13 @@ class SceneExporter:
         if obj.type == "POINTCLOUD":
             return [Spheres(centres, radii, variant, self.placements.sole_matrix(obj)) for slot, centres, radii in spheres(obj.data)
                     for variant in self._variants(obj, slot, None)]
+        if obj.type == "VOLUME":
+            variants, box = self._volume_variants(obj)
+            return self._parts(variants, box.corners(), None, None, Box.TRIANGLES) if variants else []
         mesh = obj.to_mesh()
         if mesh is None:
             return []
-        if obj.name_full in self.still_shapes and self._is_own(obj):
+        if obj.name_full in self.still_shapes and self.is_own(obj):
             export_meshes.reshape(mesh, self.still_shapes[obj.name_full])
         piece, motions = self._motions(obj, mesh)
         kept = self._displace(obj, mesh)
@@ -289,7 +273,7 @@ class SceneExporter:
     def _materials(self, obj):
         if self.layer.material_override is not None:
             return [self.layer.material_override] * max(1, len(obj.material_slots))
-        return [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
+        return [s.material for s in obj.material_slots] if self.is_own(obj) else list(obj.data.materials)
 
     def _random_of(self, instance):
         """The random number that the materials of an instance ask for; None where none does."""
@@ -339,7 +323,7 @@ class SceneExporter:
     def _look_at_bodies(self):
         """Makes all atlases coarser where they would be too large together."""
         demand, seen = BodyDemand(self.materials.files.source, self.placements.most_texels), set()
-        for _, instance in self._instances():
+        for _, instance in self.instances():
             obj = instance.object
             if obj.type not in SURFACES or not instance.show_self or Placements.key(obj) in seen:
                 continue
@@ -362,7 +346,7 @@ class SceneExporter:
     def _look_at_instances(self):
         self.uv_ranges, varying = UvRanges(), Varying()
         self.placements = Placements(None if self.is_preview else self.camera)
-        for _, instance in self._instances():
+        for _, instance in self.instances():
             obj = instance.object
             if obj.type in WRITTEN:
                 self.placements.add(instance)
@@ -370,7 +354,10 @@ class SceneExporter:
                 materials = {m.name_full: m for m in self._materials(obj) if m}
                 self.uv_ranges.add(obj.data, set(materials))
                 varying.add(materials)
+            elif obj.type == "VOLUME":
+                varying.add_volume()
         self.most_places = varying.most_places(self.is_preview)
+        self.volume_objects = VolumeObjects(self.placements, self.folder, self.warn, self.most_places)
 
     def _parts(self, variants, positions, normals, uvs, triangles, motion=None, tangents=None, tube_sides=0):
         file = f"mesh{len(os.listdir(self.folder))}.ply"
@@ -379,7 +366,7 @@ class SceneExporter:
 
     def _motions(self, obj, mesh):
         """(piece of each triangle, motion of each piece) of what changes its shape; (None, None) of what does not."""
-        has_motion = self.shutter and obj.type == "MESH" and self._is_own(obj)
+        has_motion = self.shutter and obj.type == "MESH" and self.is_own(obj)
         closing = self.closing.get(obj.name_full) if has_motion else None
         opening = None if closing is None else export_meshes.positions(mesh)
         if closing is None or np.array_equal(closing, opening):

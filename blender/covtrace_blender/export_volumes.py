@@ -2,6 +2,7 @@
 
 import math
 
+import bpy
 import numpy as np
 
 from .coefficients import Coefficients
@@ -15,6 +16,9 @@ from .volume_lattice import PROBES, lattice_for, most_of_each
 
 STEFAN_BOLTZMANN = 5.670373e-14 / math.pi  # of Cycles' blackbodies in volumes, by the fourth power of the temperature
 
+# Since Blender 5 Cycles looks up one of the voxels around a place by chance: nodes make the same of each, and means are linear between them.
+AT_VOXELS = bpy.app.version >= (5, 0, 0)
+WITH_BOXES = (5, 3, 0)  # in which what hangs on no grid fills the box around the grids, and not in 5.0, where it is up to a fifth brighter
 UNEVEN = 0.05  # of a colour's channel: what is less is hardly seen
 COARSE = 0.12  # of the mean: three times the error that a lattice is to have
 
@@ -43,7 +47,11 @@ class _Sockets:
     def grid(self, node, name):
         """(n, 3) of the attribute that a socket names; None where there is none."""
         socket = node.inputs.get(name)
-        return self._nodes.place.grid(socket.default_value) if socket else None
+        return self.grid_of(socket.default_value) if socket else None
+
+    def grid_of(self, name):
+        """The same of a name."""
+        return self._nodes.place.grid(name)
 
 
 def _times(colour, number):
@@ -65,10 +73,14 @@ def _light_of_principled(node, sockets):
 
 
 def coefficients(node, sockets):
-    """The Coefficients of a volume shader's node, as Cycles has them, by _Sockets. Raises Unsupported."""
+    """The Coefficients of a volume shader's node, None for what has no material, as Cycles has them, by _Sockets. Raises Unsupported."""
     def shader(socket):
         return coefficients(socket.links[0].from_node, sockets) if socket.is_linked else Coefficients()
 
+    if node is None:
+        # Cycles' own for what has no material
+        density = np.maximum(sockets.grid_of("density").mean(-1), 0)[:, None]
+        return Coefficients(0.5 * density * np.ones(3), 0.5 * density * np.ones(3))
     if node.type == "ADD_SHADER":
         return shader(node.inputs[0]).plus(shader(node.inputs[1]))
     if node.type == "MIX_SHADER":
@@ -101,7 +113,8 @@ def medium_of(node, space, pixels_of, ray, owner, tell):
 
     def at(places):
         place = VolumePlace(space, places, pixels_of, ray, owner)
-        return coefficients(node, _Sockets(Evaluator(place), told.add)), place
+        found = coefficients(node, _Sockets(Evaluator(place), told.add))
+        return found.times(np.float32(space.density)) if space else found, place
 
     probes = space.random_places(PROBES) if space else np.zeros((1, 3), np.float32)
     found, place = at(probes)
@@ -109,9 +122,12 @@ def medium_of(node, space, pixels_of, ray, owner, tell):
         def values_at(places):
             return at(places)[0].values(len(places))
 
-        lattice, error = lattice_for(space, values_at)
+        is_of_voxels = AT_VOXELS and space.lattice and place.asked == {"GRID"}
+        lattice, error = (space.lattice, 0) if is_of_voxels else lattice_for(space, values_at)
         found = Coefficients.of_values(lattice.sampled(values_at))
         _tell_of_colours(found, told.add)
+        if bpy.app.version < WITH_BOXES and space.lattice and _has_border(found):
+            told.add("its volume is not empty where its grids are; it fills the box around them, in this version of Cycles somewhat more")
         if error > COARSE:
             told.add(f"its volume varies between the places of its grid by {100 * error:.0f} % of its mean in the mean, which it has "
                      f"{' x '.join(map(str, lattice.shape))} of")
@@ -119,6 +135,11 @@ def medium_of(node, space, pixels_of, ray, owner, tell):
         tell(text)
     # Rows of an even medium are alike; missing attributes make one for each place.
     return Coefficients.of_values(found.values()[0]) if place.is_uniform else VaryingMedium(found, lattice), place.asked
+
+
+def _has_border(found):
+    """Whether what nodes gave on a lattice is more than nothing in its first place, where grids have nothing."""
+    return any(part[0].max() > UNEVEN * part.mean() for part in (found.scattering, found.absorption, found.light))
 
 
 def _tell_of_colours(found, tell):
@@ -171,6 +192,10 @@ class Varying:
             if name not in self._known:
                 self._known[name] = _may_vary(material)
         self._count += any(self._known[name] for name in materials)
+
+    def add_volume(self):
+        """A volume object."""
+        self._count += 1
 
     def most_places(self, is_preview):
         """The most places that the lattice of one instance may have."""

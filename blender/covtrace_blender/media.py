@@ -7,7 +7,6 @@ import numpy as np
 from .coefficients import Coefficients
 from .placement import matrix_text
 from .shader_nodes.light_path import RAYS
-from .solid import Solid
 
 
 class VaryingMedium:
@@ -99,13 +98,13 @@ class Volumes:
     def __init__(self):
         self._solids, self._bodies, self._inverses = {}, [], []
 
-    def add(self, obj, mesh, matrix, medium, rays):
-        """mesh: of the object, which instances share, as it is rendered; rays: the kinds that see it."""
-        if abs(matrix.determinant()) < 1e-30 or not mesh.polygons:
+    def add(self, obj, make_solid, matrix, medium, rays):
+        """make_solid: gives the Solid or Box of the object, which instances share; rays: the kinds that see it."""
+        if abs(matrix.determinant()) < 1e-30:
             return
         key = obj.data.as_pointer()
         if key not in self._solids:
-            self._solids[key] = Solid(mesh)
+            self._solids[key] = make_solid()
         self._bodies.append((obj.name_full, self._solids[key], medium, set(rays)))
         self._inverses.append(np.array(matrix.inverted()))
 

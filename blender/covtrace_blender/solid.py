@@ -2,6 +2,7 @@
 
 import functools
 
+import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
@@ -33,3 +34,21 @@ class Solid:
                 return crossings % 2 == 1
             origin = where + direction * step
         return False
+
+
+class Box:
+    """The same of a box that lies along the axes."""
+
+    # Corners of its sides, anticlockwise from without; corner k is at the high end of x, y, z by the bits of k.
+    TRIANGLES = np.array([(0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 2, 3), (0, 3, 1),
+                          (4, 5, 7), (4, 7, 6)], np.int32)
+
+    def __init__(self, low, high):
+        self.low, self.high = low, high
+
+    def corners(self):
+        """(8, 3) float32."""
+        return np.array([[(self.low, self.high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], np.float32)
+
+    def holds(self, place):
+        return bool((self.low <= place).all() and (place <= self.high).all())

@@ -43,6 +43,10 @@ class Placements:
         matrices = self._matrices.get(self.key(obj), ())
         return matrices[0] if len(matrices) == 1 else None
 
+    def first_matrix(self, obj):
+        """That of the first of all instances."""
+        return self._matrices[self.key(obj)][0]
+
     def scale(self, obj):
         """The mean scale of a mesh in the world; of instances that of the first. To five digits: turns do not change it."""
         matrices = self._matrices.get(self.key(obj))

@@ -27,15 +27,16 @@ def most_of_each(count, is_preview):
 class VolumeSpace:
     """The box that a volume fills, in its object's space: low and high are its corners. texture_space: (least corner, size) of Generated
     coordinates. matrix: 4x4 to the world; None where there is none that is the only one. grids: {name of an attribute: function of (n, 3)
-    places to (n, 3)}. most: places of a lattice."""
+    places to (n, 3)}. most: places of a lattice; lattice: the coarsest one that is worth trying, or None. density: a factor of all
+    coefficients."""
 
-    def __init__(self, low, high, texture_space, matrix=None, grids=None, most=MOST):
+    def __init__(self, low, high, texture_space, matrix=None, grids=None, most=MOST, lattice=None, density=1.0):
         self.low, self.high, self.texture_space = np.array(low, float), np.array(high, float), texture_space
-        self.matrix, self.grids, self.most = matrix, grids or {}, most
+        self.matrix, self.grids, self.most, self.lattice, self.density = matrix, grids or {}, most, lattice, density
 
     def key(self):
         """Equal for spaces in which all is alike but the world."""
-        return (*self.low, *self.high, *(tuple(part) for part in self.texture_space), self.most)
+        return (*self.low, *self.high, *(tuple(part) for part in self.texture_space), self.most, self.density, *map(id, self.grids.values()))
 
     def random_places(self, count):
         return (self.low + np.random.default_rng(0).random((count, 3)) * (self.high - self.low)).astype(np.float32)
@@ -56,6 +57,14 @@ class Lattice:
         cells = np.maximum(np.round(size / cell), 1).astype(int)
         self.cell, self.shape = size / cells, tuple(int(n) + 2 for n in cells)
         self.low, self.high = low - self.cell, low + size + self.cell
+
+    @classmethod
+    def of_cells(cls, low, cell, shape):
+        """The one of these cells, of which the first begins at `low`."""
+        found = cls.__new__(cls)
+        found.low, found.cell, found.shape = np.array(low, float), np.array(cell, float), tuple(int(n) for n in shape)
+        found.high = found.low + found.cell * found.shape
+        return found
 
     def places(self, first, end):
         """(end - first, 3) of those with these numbers; x changes fastest."""
@@ -92,7 +101,8 @@ def lattice_for(space, values_at):
     probes = space.random_places(PROBES)
     exact = values_at(probes)
     mean = np.maximum(np.abs(exact).mean(0), 1e-30)
-    count, lattice = FEWEST, Lattice(space.low, space.high, FEWEST)
+    lattice = space.lattice or Lattice(space.low, space.high, FEWEST)
+    count = space.lattice.count() if space.lattice else FEWEST
     while True:
 
         def values_of(numbers):

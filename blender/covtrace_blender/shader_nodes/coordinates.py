@@ -101,6 +101,12 @@ def _attribute(node, output, inputs):
     return found if part == "ATTRIBUTE" else found.mean(axis=-1)
 
 
+def _volume_info(node, output, inputs):
+    """The grids of smoke and fire by their usual names."""
+    found = inputs.place.attribute(node, output.identifier.lower(), "ATTRIBUTE", 0.0)
+    return found if output.identifier == "Color" else found.mean(axis=-1)
+
+
 def _part_of(value, part):
     """A part of an object's attribute: (1,), (3,) or (4,), or None for what it has not."""
     if value is None:
@@ -119,5 +125,5 @@ def _object_info(node, output, inputs):
 
 
 NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping, "VECTOR_ROTATE": _vector_rotate,
-         "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute,
+         "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute, "VOLUME_INFO": _volume_info,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

@@ -81,7 +81,9 @@ class VolumePlace(_Place):
 
     def attribute(self, node, name, part, missing):
         found = self.grid(name)
-        return np.full((len(self._places), 3), missing, np.float32) if found is None else found
+        if found is None or part == "ALPHA":
+            return np.full((len(self._places), 3), missing if found is None else 1, np.float32)
+        return found
 
     def coordinates(self, node, kind):
         if kind not in ("OBJECT", "GENERATED", "WORLD"):
