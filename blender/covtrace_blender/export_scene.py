@@ -30,6 +30,7 @@ from .uv_ranges import UvRanges
 from .visibility import Visibility
 from .volume_lattice import VolumeSpace
 from .volume_objects import VolumeObjects
+from .world_volume import border, reach_of_distant_light, world_volume
 
 CONTENT = "content.pbrt"
 
@@ -43,7 +44,7 @@ class SceneExporter(Instances):
     def __init__(self, engine, depsgraph, folder, tell=lambda text: None):
         super().__init__(engine, depsgraph, SceneCamera(depsgraph.scene, depsgraph))
         self.folder, self.tell, self.layer = folder, tell, depsgraph.view_layer_eval
-        self.warnings, self.is_preview = [], False
+        self.warnings = []
 
     def warn(self, text):
         if text not in self.warnings:
@@ -74,6 +75,10 @@ class SceneExporter(Instances):
             self._write_content(out, {})
         return CONTENT
 
+    def medium_everywhere(self):
+        """Text before the camera of a viewport, once the content is written."""
+        return "".join(f'MediumInterface "" "{name}"\n' for name in self.everywhere)
+
     def _write_content(self, out, moving):
         self.out = out
         out.write('WorldBegin\nMediumInterface "" ""\n')
@@ -95,13 +100,18 @@ class SceneExporter(Instances):
         time = self.frame if self.shutter is None else self.frame + self.shutter[0]
         # A layer without sky has no light of it, either, as in Cycles.
         world = (getattr(self.layer, "world_override", None) or self.scene.world) if self.layer.use_sky else None
-        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview)
+        found = world_volume(world, self.materials.files.source, self.warn)
+        self.reach, self.everywhere = reach_of_distant_light(found), ()
+        if found:
+            self.everywhere = (self.materials.media.add(found),)
+            self.out.write(border(found, *self.everywhere, self.corners()))
+        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview, self.reach)
 
     # -- objects
 
     def _find_volumes(self):
         """The Volumes of all instances that are written."""
-        found = Volumes()
+        found = Volumes(self.everywhere)
         for _, instance in self.instances():
             obj = instance.object
             slots = [slot for slot, material in enumerate(self._materials(obj)) if has_volume(material)] \
@@ -195,9 +205,11 @@ class SceneExporter(Instances):
             moves = False
 
         class Scaled:
-            """The lamp with its energy for an area of unit scale."""
+            """The lamp with its energy for an area of unit scale, and with what comes to the scene of a sun's colour."""
+            energy, color = lamp.energy * scale, [c * r for c, r in zip(lamp.color, self.reach if lamp.type == "SUN" else (1, 1, 1))]
+
             def __getattr__(self, name):
-                return lamp.energy * scale if name == "energy" else getattr(lamp, name)
+                return getattr(lamp, name)
         export_lights.write_lamp(self.out, Scaled(), matrix, end if moves else None, hidden, self.lamp_images, self.warn)
 
     def _export_parts(self, obj):

@@ -21,14 +21,19 @@ from .visibility import hidden_from
 LEAST_ROWS = 256  # of images that are brought to twice their height
 
 
-def write_world(out, world, folder, warn, tell, time, is_preview=False):
+def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1, 1, 1)):
     """Writes the light of the world; a black one, too, as covtrace lights scenes that have no light at all.
 
-    warn(text): what is left out; tell(text): what is done; time: in frames; is_preview: bakes are coarse.
+    warn(text): what is left out; tell(text): what is done; time: in frames; is_preview: bakes are coarse; reach: how much of each channel
+    comes to the scene.
     """
     is_dark = True
-    for rays in _groups(world):
+    for rays in _groups(world) if any(reach) else []:
         light = _light(world, warn, tell, time, is_preview, rays[0])
+        if isinstance(light, tuple):
+            light = _visible(tuple(c * r for c, r in zip(light, reach)))
+        elif light is not None:
+            light.values = light.values * np.array(reach, np.float32)
         if light is not None:
             hidden = hidden_from(() if len(rays) == len(_SKY_RAYS) else set(RAYS) - set(rays))
             _write_light(out, light, os.path.join(folder, f"world {rays[0]}.pfm"), hidden)
@@ -77,8 +82,6 @@ def _light(world, warn, tell, time, is_preview, ray):
     if not world.use_nodes or not world.node_tree:
         return _visible(tuple(world.color))
     output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
-    if output is not None and output.inputs["Volume"].is_linked:
-        warn("the world's volume is not supported and left out")
     if output is None or not output.inputs["Surface"].is_linked:
         return None
     background = _seen_shader(output.inputs["Surface"], ray)

@@ -2,18 +2,21 @@
 
 import math
 
+import numpy as np
+
 from . import export_meshes
 from .shutter import has_blurred_shape, is_blurred, shutter_times
 
 
 class Instances:
-    """The base of an exporter with engine, depsgraph, scene, frame and camera as SceneExporter has them. shutter: (open, close) in frames, or
-    None; still: matrices by key of what is not blurred; still_shapes, closing: places of vertices by name."""
+    """The base of an exporter with engine, depsgraph, scene, frame and camera as SceneExporter has them. is_preview: whether it is for a
+    viewport; shutter: (open, close) in frames, or None; still: matrices by key of what is not blurred; still_shapes, closing: places of
+    vertices by name."""
 
     def __init__(self, engine, depsgraph, camera):
         self.engine, self.depsgraph, self.scene, self.camera = engine, depsgraph, depsgraph.scene, camera
         self.frame = self.scene.frame_current_final
-        self.shutter, self.still, self.still_shapes, self.closing = None, {}, {}, {}
+        self.is_preview, self.shutter, self.still, self.still_shapes, self.closing = False, None, {}, {}, {}
 
     def look_at_close(self):
         """Where things are when the shutter closes: (matrices by key, (open, close) in frames); then back to open."""
@@ -41,6 +44,15 @@ class Instances:
         """Whether its data is that of the object of its name: geometry nodes place other data under their object's name."""
         own = obj.original.evaluated_get(self.depsgraph).data
         return own is not None and own.as_pointer() == obj.data.as_pointer()
+
+    def corners(self):
+        """(n, 3) corners of the boxes around all instances, in the world, and the camera's place, or the origin in viewports."""
+        found = [np.zeros((1, 3)) if self.is_preview else np.array(self.camera.matrix().translation)[None]]
+        for _, instance in self.instances():
+            matrix, corners = np.array(instance.matrix_world), np.array([tuple(corner) for corner in instance.object.bound_box])
+            found.append(corners @ matrix[:3, :3].T + matrix[:3, 3])
+        places = np.concatenate(found)
+        return places[np.isfinite(places).all(1)]
 
     def go_to(self, time):
         frame = math.floor(time)

@@ -93,9 +93,11 @@ class Media:
 
 
 class Volumes:
-    """Instances whose materials have media. `add` them all before asking where a place is."""
+    """Instances whose materials have media. `add` them all before asking where a place is. everywhere: names of media that all places are
+    in."""
 
-    def __init__(self):
+    def __init__(self, everywhere=()):
+        self._everywhere = everywhere
         self._solids, self._bodies, self._inverses = {}, [], []
 
     def add(self, obj, make_solid, matrix, medium, rays):
@@ -118,7 +120,7 @@ class Volumes:
         """The names of the media of all that hold a place of the world and that one of these kinds of rays sees; `but`: the
         name of an object that does not count."""
         if not self._bodies:
-            return ()
+            return self._everywhere
         inverses, low, high = self._boxes
         # Few boxes hold the place; only these are worth rays.
         places = inverses[:, :3, :3] @ np.array(place) + inverses[:, :3, 3]
@@ -127,4 +129,4 @@ class Volumes:
             name, solid, medium, seen_by = self._bodies[index]
             if name != but and seen_by.intersection(rays) and solid.holds(places[index]):
                 found.append(medium)
-        return tuple(found)
+        return (*self._everywhere, *found)

@@ -25,7 +25,7 @@ class Viewport:
         # Blender lets go of the engine where a viewport is closed or shows something else, and forbids its __del__ to
         # look at it.
         weakref.finalize(engine, self._session.stop)
-        self._is_changed, self._content, self._key = True, None, None
+        self._is_changed, self._content, self._around, self._key = True, None, "", None
         self._drawn, self._texture, self._warnings, self._failure = 0, None, [], ""
         look = weakref.WeakMethod(self._look)
 
@@ -92,7 +92,8 @@ class Viewport:
         if self._content is None:
             return
         folder, content = self._content
-        self._session.show(View(text, folder.name, content, size, options, keep=folder))
+        # Other media around the eye are not found here.
+        self._session.show(View(self._around + text, folder.name, content, size, options, keep=folder))
 
     def _export(self, depsgraph):
         """Writes the scene; where it cannot be written nothing new is shown until it changes."""
@@ -101,6 +102,7 @@ class Viewport:
         self._content, self._failure = None, ""
         try:
             self._content = folder, exporter.write_content()
+            self._around = exporter.medium_everywhere()
         except (RuntimeError, OSError) as problem:
             self._failure = str(problem)
         self._warnings = exporter.warnings
