@@ -327,6 +327,12 @@ bool Lights::has_sky() const {
     return std::any_of(impl_->environments.begin(), impl_->environments.end(),
                        [](const Environment& e) { return !e.disc(); });
 }
+bool Lights::has_sky_for(RayKind kind) const {
+    for (size_t i = 0; i < impl_->environments.size(); ++i)
+        if (!impl_->environments[i].disc() && contains(impl_->environment_visible_to[i], kind))
+            return true;
+    return false;
+}
 bool Lights::is_in_disc(Vec3 w) const {
     return std::any_of(impl_->environments.begin(), impl_->environments.end(),
                        [w](const Environment& e) { return e.disc() && e.disc()->contains(w); });

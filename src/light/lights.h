@@ -146,6 +146,8 @@ class Lights {
     bool has_environment() const;
     /// Whether there is one that is more than a disc.
     bool has_sky() const;
+    /// Whether rays of a kind find such a one.
+    bool has_sky_for(RayKind kind) const;
     /// Whether a direction is one of the disc of a distant light.
     bool is_in_disc(Vec3 w) const;
     /// Radiance of all infinite lights that a ray of a kind finds from the point p in the direction

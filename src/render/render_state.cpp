@@ -76,7 +76,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
       filter(options.filter),
       region(render_region(scene.description.film)),
       display{0, 0, scene.description.film.width, scene.description.film.height},
-      has_holes(!scene.lights.has_sky()),
+      has_holes(!scene.lights.has_sky_for(RayKind::camera)),
       metadata(scene_metadata(scene, options)),
       stage(method == Method::uniform ? Stage::rounds : Stage::first_paths),
       spp(target_spp(scene.description, options)) {

@@ -44,7 +44,7 @@ struct RenderState {
     FilterRule filter = FilterRule::verified;
     PixelBounds region;      ///< the pixels to render
     PixelBounds display;     ///< the full frame
-    bool has_holes = false;  ///< whether nothing lies behind the scene
+    bool has_holes = false;  ///< whether the camera sees nothing behind the scene
     Metadata metadata;       ///< metadata of the image: version, scene, camera
 
     Stage stage = Stage::rounds;
