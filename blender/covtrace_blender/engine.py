@@ -13,7 +13,7 @@ import traceback
 import bpy
 import numpy as np
 
-from . import export_scene, layers, settings, viewport
+from . import export_scene, layers, settings, shadow_catchers, viewport
 
 # Passes beside the image: (name as covtrace's Blender layer names have it, channels, their names, type).
 PASSES = (
@@ -131,15 +131,37 @@ class CovtraceEngine(bpy.types.RenderEngine):
         program = settings.find_program()
         self._tell("exporting the scene")
         layer = depsgraph.view_layer
-        exporter = export_scene.SceneExporter(self, depsgraph, folder, self._tell)
-        file = exporter.write()
-        missing = passes_without_counterpart(layer)
-        if missing:
-            exporter.warn(f"passes that have no counterpart: {', '.join(missing)}")
-        for text in exporter.warnings:
-            self.report({"WARNING"}, text)
-        image = os.path.join(folder, "image.exr")
-        chosen = scene.covtrace
+        told, found, region = [], {}, None
+        for picture in shadow_catchers.pictures(depsgraph):
+            own_folder = os.path.join(folder, picture or "whole")
+            os.mkdir(own_folder)
+            exporter = export_scene.SceneExporter(self, depsgraph, own_folder, self._tell, picture)
+            file = exporter.write()
+            region = exporter.camera.region
+            missing = passes_without_counterpart(layer)
+            if missing:
+                exporter.warn(f"passes that have no counterpart: {', '.join(missing)}")
+            for text in exporter.warnings:
+                if text not in told:
+                    self.report({"WARNING"}, text)
+            told += exporter.warnings
+            image = os.path.join(own_folder, "image.exr")
+            code = self._run(self._command(program, file, image, scene.covtrace, layer))
+            if os.path.exists(image):
+                found[picture] = self._with_alpha(layers.read(image), scene.render.film_transparent, picture)
+            if code != 0:
+                break
+        if code == 0 and None not in found:
+            found = {None: self._composed(found)}
+        if None in found:
+            self._show(found[None], region, layer)
+        elif code == 6:
+            self._give_blank(depsgraph)  # cancelled before there was anything to see
+        if code not in (0, 6):
+            raise RuntimeError(f"covtrace: {self._last_error or f'it ended with exit code {code}'}")
+
+    @staticmethod
+    def _command(program, file, image, chosen, layer):
         layer_names = LAYERS if chosen.method == "uniform" else f"{LAYERS},{PREDICTED_LAYERS}"
         if layer.use_pass_position:
             layer_names += ",P"
@@ -155,13 +177,22 @@ class CovtraceEngine(bpy.types.RenderEngine):
             command += ["--denoiser", "none"]
         if chosen.threads > 0:
             command += ["--threads", str(chosen.threads)]
-        code = self._run(command)
-        if os.path.exists(image):
-            self._read(image, exporter.camera.region, scene.render.film_transparent, layer)
-        elif code == 6:
-            self._give_blank(depsgraph)  # cancelled before there was anything to see
-        if code not in (0, 6):
-            raise RuntimeError(f"covtrace: {self._last_error or f'it ended with exit code {code}'}")
+        return command
+
+    @staticmethod
+    def _with_alpha(channels, is_transparent, picture):
+        """Pictures have alpha where nothing is seen behind what they show; where the film is not transparent it is not wanted."""
+        wanted = is_transparent or picture in (shadow_catchers.MATTE, shadow_catchers.CAUGHT, shadow_catchers.BARE)
+        if not wanted or "ViewLayer.Combined.A" not in channels:
+            channels["ViewLayer.Combined.A"] = np.ones_like(channels["ViewLayer.Combined.R"])
+        return channels
+
+    @staticmethod
+    def _composed(found):
+        """The channels of the matte, with the image that is composed of all pictures."""
+        names = [f"ViewLayer.Combined.{letter}" for letter in "RGBA"]
+        image = shadow_catchers.composed({picture: layers.pixels(channels, names) for picture, channels in found.items()})
+        return {**found[shadow_catchers.MATTE], **{name: image[..., k] for k, name in enumerate(names)}}
 
     def _run(self, command):
         """The program's exit code; shows its progress, and interrupts it where Blender is asked to stop."""
@@ -216,17 +247,13 @@ class CovtraceEngine(bpy.types.RenderEngine):
     def _tell(self, text):
         self.update_stats("", text)
 
-    def _read(self, image, region, is_transparent, layer):
-        channels = layers.read(image)
+    def _show(self, channels, region, layer):
         for _, (name, *_), own in PASSES_ON_DEMAND:
             own = "Denoising Normal" if own == "N" else own
             for letter in "XYZ":
                 if f"ViewLayer.{own}.{letter}" in channels:
                     channels[f"ViewLayer.{name}.{letter}"] = channels[f"ViewLayer.{own}.{letter}"]
         x0, y0, x1, y1 = region
-        # Only pictures with holes have alpha, and only where the film is transparent it is wanted.
-        if not is_transparent or "ViewLayer.Combined.A" not in channels:
-            channels["ViewLayer.Combined.A"] = np.ones((y1 - y0, x1 - x0), dtype=np.float32)
         result = self.begin_result(0, 0, x1 - x0, y1 - y0, layer=layer.name)
         for render_pass in result.layers[0].passes:
             planes = [channels.get(f"ViewLayer.{render_pass.name}.{letter}") for letter in render_pass.channel_id]

@@ -150,3 +150,15 @@ def area_scale(lamp, matrix):
     if not getattr(lamp, "normalize", True):
         return 1
     return 1 / max(abs(matrix.col[0].xyz.length * matrix.col[1].xyz.length), 1e-12) if lamp.type == "AREA" else 1
+
+
+class ScaledLamp:
+    """A lamp as it is on an object with a matrix: with its energy for an area of unit scale, and of a sun what comes to the scene of its colour
+    by `reach`."""
+
+    def __init__(self, lamp, matrix, reach):
+        self._lamp, self.energy = lamp, lamp.energy * area_scale(lamp, matrix)
+        self.color = [c * r for c, r in zip(lamp.color, reach if lamp.type == "SUN" else (1, 1, 1))]
+
+    def __getattr__(self, name):
+        return getattr(self._lamp, name)

@@ -24,6 +24,7 @@ from .owner import Owner, asks_for_random, random_of
 from .part import Part, write_parts
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
+from .shadow_catchers import BEHIND
 from .solid import Box, Solid
 from .texel_density import Placements
 from .uv_ranges import UvRanges
@@ -39,12 +40,12 @@ WRITTEN = (*SURFACES, "CURVES", "POINTCLOUD", "VOLUME")
 
 
 class SceneExporter(Instances):
-    """engine: moves the frame; tell(text): is told what takes time."""
+    """engine: moves the frame; tell(text): is told what takes time; picture: one of shadow_catchers, or None."""
 
-    def __init__(self, engine, depsgraph, folder, tell=lambda text: None):
+    def __init__(self, engine, depsgraph, folder, tell=lambda text: None, picture=None):
         super().__init__(engine, depsgraph, SceneCamera(depsgraph.scene, depsgraph))
         self.folder, self.tell, self.layer = folder, tell, depsgraph.view_layer_eval
-        self.warnings = []
+        self.warnings, self.picture = [], picture
 
     def warn(self, text):
         if text not in self.warnings:
@@ -88,7 +89,7 @@ class SceneExporter(Instances):
         self._write_world()
         self._look_at_instances()
         self._look_at_bodies()
-        self.visibility = Visibility(self.depsgraph.view_layer, Clipping(None if self.is_preview else self.camera))
+        self.visibility = Visibility(self.depsgraph.view_layer, Clipping(None if self.is_preview else self.camera), self.picture)
         self.volumes = self._find_volumes()
         self._write_objects(moving)
         self.materials.baked.keep()
@@ -105,7 +106,11 @@ class SceneExporter(Instances):
         if found:
             self.everywhere = (self.materials.media.add(found),)
             self.out.write(border(found, *self.everywhere, self.corners()))
-        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview, self.reach)
+        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview, self.reach,
+                                 self.is_preview or self._is_sky_seen())
+
+    def _is_sky_seen(self):
+        return self.picture == BEHIND or self.picture is None and not self.scene.render.film_transparent
 
     # -- objects
 
@@ -197,20 +202,12 @@ class SceneExporter(Instances):
 
     def _write_lamp(self, obj, matrix, end, hidden):
         lamp = obj.data
-        scale = export_lights.area_scale(lamp, matrix)
         moves = end is not None and not is_same(matrix, end)
         if moves and lamp.type not in export_lights.MAY_MOVE:
             self.warn(f"lamp '{obj.name}' is a {lamp.type.lower()} and moves while the shutter is open; it stays where it is "
                       "at the opening")
             moves = False
-
-        class Scaled:
-            """The lamp with its energy for an area of unit scale, and with what comes to the scene of a sun's colour."""
-            energy, color = lamp.energy * scale, [c * r for c, r in zip(lamp.color, self.reach if lamp.type == "SUN" else (1, 1, 1))]
-
-            def __getattr__(self, name):
-                return getattr(lamp, name)
-        export_lights.write_lamp(self.out, Scaled(), matrix, end if moves else None, hidden, self.lamp_images, self.warn)
+        export_lights.write_lamp(self.out, export_lights.ScaledLamp(lamp, matrix, self.reach), matrix, end if moves else None, hidden, self.lamp_images, self.warn)
 
     def _export_parts(self, obj):
         """The Parts of an evaluated object, its files and materials written."""

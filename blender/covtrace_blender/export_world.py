@@ -21,14 +21,14 @@ from .visibility import hidden_from
 LEAST_ROWS = 256  # of images that are brought to twice their height
 
 
-def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1, 1, 1)):
+def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1, 1, 1), is_seen=True):
     """Writes the light of the world; a black one, too, as covtrace lights scenes that have no light at all.
 
     warn(text): what is left out; tell(text): what is done; time: in frames; is_preview: bakes are coarse; reach: how much of each channel
-    comes to the scene.
+    comes to the scene; is_seen: whether the camera sees it.
     """
     is_dark = True
-    for rays in _groups(world) if any(reach) else []:
+    for rays in _groups(world, is_seen) if any(reach) else []:
         light = _light(world, warn, tell, time, is_preview, rays[0])
         if isinstance(light, tuple):
             light = _visible(tuple(c * r for c, r in zip(light, reach)))
@@ -46,12 +46,12 @@ def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1
 _SKY_RAYS = tuple(ray for ray in RAYS if ray != "shadow")
 
 
-def _groups(world):
-    """The kinds of rays that see the world, in groups that see the same."""
+def _groups(world, is_seen):
+    """The kinds of rays that see the world, in groups that see the same; is_seen: whether the camera may."""
     if world is None:
         return []
     seen = getattr(world, "cycles_visibility", None)  # None where Cycles is not enabled
-    rays = [ray for ray in _SKY_RAYS if getattr(seen, "scatter" if ray == "volume" else ray, True)]
+    rays = [ray for ray in _SKY_RAYS if getattr(seen, "scatter" if ray == "volume" else ray, True) and (is_seen or ray != "camera")]
     nodes = list(all_nodes(world.node_tree)) if world.use_nodes and world.node_tree else []
     return groups_of_rays(nodes, rays)
 

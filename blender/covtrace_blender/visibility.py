@@ -1,6 +1,7 @@
 """Which rays see an object, and what of that covtrace does not have."""
 
 from .shader_nodes.light_path import RAYS
+from .shadow_catchers import hidden_in, is_catcher
 
 _PROPERTIES = {ray: "visible_volume_scatter" if ray == "volume" else f"visible_{ray}" for ray in RAYS}
 
@@ -14,10 +15,11 @@ def hidden_from(rays):
 
 
 class Visibility:
-    """Looks at the evaluated objects of a view layer, which a Clipping hides from the camera, and tells once for each kind what has no counterpart."""
+    """Looks at the evaluated objects of a view layer, which a Clipping hides from the camera, and tells once for each kind what has no
+    counterpart. picture: one of shadow_catchers, or None."""
 
-    def __init__(self, view_layer, clipping):
-        self.view_layer, self._clipping = view_layer, clipping
+    def __init__(self, view_layer, clipping, picture=None):
+        self.view_layer, self._clipping, self._picture = view_layer, clipping, picture
         self._names = {}
 
     def hidden(self, instance):
@@ -29,14 +31,15 @@ class Visibility:
             hidden |= self._hidden(instance.parent)
         if "camera" not in hidden and self._clipping.hides(instance):
             hidden.add("camera")
-        if not set(RAYS) - hidden:
+        hidden = hidden_in(self._picture, instance, hidden)
+        if hidden is None or not set(RAYS) - hidden:
             return None
         self._note_linking(obj)
         if obj.type == "LIGHT":
             return hidden if self._is_lamp_lit(obj, hidden) else None
         if self._is_holdout(obj):
             self._note("rendered although they are holdouts", obj)
-        if obj.is_shadow_catcher:
+        if self._picture is None and is_catcher(instance):
             self._note("rendered as surfaces although they catch shadows", obj)
         return hidden
 

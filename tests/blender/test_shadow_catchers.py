@@ -1,0 +1,51 @@
+"""Transparent films and shadow catchers, against Cycles."""
+
+import bpy
+import numpy as np
+from addon_support import BlenderTest, material, render
+
+WIDTH, HEIGHT = 96, 72  # of fewer pixels more are edges, about which the pictures are filtered apart
+
+
+def picture(engine, samples=128):
+    """(h, w, 4)."""
+    image = render(engine, samples)
+    return np.stack([np.reshape(image[f"Combined.{letter}"], (HEIGHT, WIDTH)) for letter in "RGBA"], axis=-1)
+
+
+class ShadowCatchersTest(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.scene.render.film_transparent = True
+        self.scene.render.resolution_x, self.scene.render.resolution_y = WIDTH, HEIGHT
+        self.background.inputs["Color"].default_value = (0.3, 0.35, 0.4, 1)
+        self.camera.location, self.camera.rotation_euler = (0, -4, 4), (0.78, 0, 0)
+        bpy.ops.mesh.primitive_cube_add(size=0.9, location=(0.2, 0, 0.45))
+        bpy.context.object.data.materials.append(material(Base_Color=(0.8, 0.2, 0.1, 1), Specular=0.0, Roughness=1.0))
+        self.lamp("SUN", energy=3, angle=0.2).rotation_euler = (0.6, 0.5, 0)
+
+    def assert_quarters(self, delta=0.005):
+        """The means of the quarters of all four channels agree."""
+        ours, theirs = picture("COVTRACE"), picture("CYCLES", 256)
+        for y in (slice(0, HEIGHT // 2), slice(HEIGHT // 2, HEIGHT)):
+            for x in (slice(0, WIDTH // 2), slice(WIDTH // 2, WIDTH)):
+                a, b = ours[y, x].mean((0, 1)), theirs[y, x].mean((0, 1))
+                self.assertLess(np.abs(a - b).max(), delta, f"{a}, {b}")
+        return ours
+
+    def test_films_are_transparent_where_the_sky_is(self):
+        ours = self.assert_quarters()
+        self.assertEqual(ours[0, 0].tolist(), [0, 0, 0, 0])
+        self.assertGreater(ours[..., 3].max(), 0.99)
+
+    def test_shadows_are_caught(self):
+        self.plane(material(**self.MATT), size=6).is_shadow_catcher = True
+        ours = self.assert_quarters()
+        self.assertLess(ours[-1, 0, 3], 0.05)
+        self.assertGreater((ours[..., 3] - (ours[..., 0] > 0.05)).max(), 0.3)  # where the shadow is alone
+
+    def test_shadows_lie_on_what_is_behind(self):
+        self.scene.render.film_transparent = False
+        self.plane(material(**self.MATT), size=6).is_shadow_catcher = True
+        self.assert_quarters()
+        self.assertEqual(picture("COVTRACE", 16)[..., 3].min(), 1)
