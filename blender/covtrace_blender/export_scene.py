@@ -16,7 +16,7 @@ from .displacement import Displacer, method_of
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_points import Spheres, spheres
-from .export_volumes import Varying, has_volume
+from .export_volumes import Varying, has_volume, is_smoke_domain
 from .instances import Instances
 from .media import Volumes
 from .node_signature import hangs_on_world
@@ -129,6 +129,8 @@ class SceneExporter(Instances):
                 variants, box = self._volume_variants(obj)
                 self._add_volume(found, instance, variants, hidden, lambda: box)
                 continue
+            if is_smoke_domain(obj):
+                self.warn(f"object '{obj.name}': the grids of its fluid simulation are not read; its cache of OpenVDB can be a volume object")
             mesh = obj.to_mesh()
             self._displace(obj, mesh)
             for slot in slots:

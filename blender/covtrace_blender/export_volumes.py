@@ -180,6 +180,11 @@ def _may_vary(material):
     return False
 
 
+def is_smoke_domain(obj):
+    """Whether an object holds the gas of a fluid simulation."""
+    return any(m.type == "FLUID" and m.fluid_type == "DOMAIN" and m.domain_settings.domain_type == "GAS" for m in obj.modifiers)
+
+
 class Varying:
     """Counts the instances whose volumes may hang on the place."""
 

@@ -173,6 +173,16 @@ class VolumesTest(BlenderTest):
         self.assertEqual(self.warnings, ["material 'filled': the colour of 'Transparent BSDF' around a volume is not supported and "
                                          "left out"])
 
+    def test_smoke_of_simulations_is_told(self):
+        self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumePrincipled")
+        fluid = bpy.context.object.modifiers.new("smoke", "FLUID")
+        fluid.fluid_type = "DOMAIN"
+        self.export()
+        self.assertEqual(self.warnings, ["object 'Cube': the grids of its fluid simulation are not read; its cache of OpenVDB can be a volume object"])
+        fluid.fluid_type = "NONE"
+        self.export()
+        self.assertEqual(self.warnings, [])
+
     def test_volumes_that_are_none_are_told_and_hide_nothing(self):
         m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
         tree = m.node_tree
