@@ -137,6 +137,8 @@ class SceneExporter(Instances):
                 if self._add_volume(found, instance, self._variants(obj, slot, mesh), hidden, lambda: Solid(mesh)):
                     break
             obj.to_mesh_clear()
+        if found and not self.is_preview and self.scene.render.film_transparent:
+            self.warn("volumes before the transparent film have less opacity than in Cycles")
         return found
 
     def _add_volume(self, found, instance, variants, hidden, make_solid):

@@ -110,6 +110,10 @@ class Volumes:
         self._bodies.append((obj.name_full, self._solids[key], medium, set(rays)))
         self._inverses.append(np.array(matrix.inverted()))
 
+    def __bool__(self):
+        """Whether there is a place in a medium."""
+        return bool(self._bodies or self._everywhere)
+
     @functools.cached_property
     def _boxes(self):
         """(inverse matrix, low and high corner in its own space) of each body."""

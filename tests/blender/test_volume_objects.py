@@ -192,6 +192,12 @@ class VolumeObjectsTest(BlenderTest):
         self.assertEqual(len(self.warnings), 1, self.warnings)
         self.assertIn("volume object 'smoke' is not rendered", self.warnings[0])
 
+    def test_opacity_before_a_transparent_film_is_told(self):
+        self.volume(self.smoke())
+        self.scene.render.film_transparent = True
+        self.export()
+        self.assertEqual(self.warnings, ["volumes before the transparent film have less opacity than in Cycles"])
+
     def test_layers_without_volumes(self):
         self.volume(self.smoke())
         self.scene.view_layers[0].use_volumes = False
