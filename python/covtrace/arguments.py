@@ -7,6 +7,9 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn
 
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
 from .errors import UsageError
 
 
@@ -16,6 +19,16 @@ def refuse(name: str, value: Any, expected: str) -> NoReturn:
     if len(shown) > longest:
         shown = shown[:longest] + "…"
     raise UsageError(f"{name} is {shown}; expected {expected}")
+
+
+def linear_of(name: str, values: ArrayLike) -> NDArray[numpy.float32]:
+    """Values in single precision. `UsageError` for integers of a picture, which are not linear and go up
+    to 255 or 65535."""
+    given = numpy.asarray(values)
+    if given.dtype in (numpy.uint8, numpy.uint16) and given.size and given.max() > 1:
+        raise UsageError(f"{name} has the type {given.dtype} and numbers up to {given.max()}; expected linear "
+                         "values, as covtrace.Image.read gives them of a picture's file")
+    return given.astype(numpy.float32, copy=False)
 
 
 def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path",

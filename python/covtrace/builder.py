@@ -11,6 +11,7 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike
 
+from .arguments import linear_of
 from .builder_calls import BuilderCalls, describe_call
 from .errors import UsageError
 from .image import Image
@@ -287,10 +288,7 @@ def _texels(values):
     given = numpy.asarray(values)
     if given.ndim not in (2, 3) or not given.size or (given.ndim == 3 and given.shape[2] not in (3, 4)):
         raise UsageError(f"values has the shape {given.shape}; expected (height, width) or (height, width, 3)")
-    if given.dtype in (numpy.uint8, numpy.uint16) and given.max() > 1:
-        raise UsageError(f"values has the type {given.dtype} and numbers up to {given.max()}; expected linear "
-                         "values, as covtrace.Image.read gives them of a picture's file")
-    values = given.astype(numpy.float32)
+    values = linear_of("values", given)
     if not numpy.isfinite(values).all():
         raise UsageError("values has numbers that are not finite; expected finite ones")
     return values

@@ -13,7 +13,7 @@ import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _covtrace
-from .arguments import path_of, refuse, text_of
+from .arguments import linear_of, path_of, refuse, text_of
 from .scene_warnings import warn
 
 Array = NDArray[numpy.float32]
@@ -146,7 +146,7 @@ class Image:
         not known."""
         channels = []
         if rgb is not None:
-            rgb = numpy.asarray(rgb, dtype=numpy.float32)
+            rgb = linear_of("rgb", rgb)
             if rgb.ndim != 3 or rgb.shape[2] not in (3, 4):
                 raise ValueError(f"rgb has the shape {rgb.shape}; expected (height, width, 3)")
             channels += [("RGBA"[c], rgb[:, :, c]) for c in range(rgb.shape[2])]

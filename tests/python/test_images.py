@@ -219,6 +219,13 @@ class Images(unittest.TestCase):
         image.metadata = {"take": 4}
         self.assertEqual(dict(image._planes.metadata), {"take": 4})
 
+    def test_integers_of_pictures_are_refused(self):
+        picture = numpy.full((2, 2, 3), 200, numpy.uint8)
+        for call in (lambda: covtrace.Image.from_arrays(picture), lambda: covtrace.compare(picture, picture / 255)):
+            with self.assertRaisesRegex(covtrace.UsageError, "rgb has the type uint8 and numbers up to 200; expected linear"):
+                call()
+        numpy.testing.assert_array_equal(covtrace.Image.from_arrays(picture // 200).rgb, 1)
+
     def test_layers_of_a_wrong_shape(self):
         for values in (3.0, [1.0, 2.0], numpy.zeros((2, 2, 2)), numpy.zeros((0, 2))):
             with self.subTest(shape=numpy.shape(values)):
