@@ -274,6 +274,16 @@ TEST(SceneMaterials, ReflectancesAreAtMostOne) {
     EXPECT_TRUE(contains(warnings_of(made.scene), "above 1"));
 }
 
+TEST(SceneMaterials, WhiteOfOtherColourSpacesIsNoWarning) {
+    for (const char* space : {"aces2065-1", "rec2020", "dci-p3"}) {
+        const std::string text = "ColorSpace \"" + std::string(space) +
+                                 "\"\nMaterial \"diffuse\" \"rgb reflectance\" [ ";
+        EXPECT_TRUE(read_world(text + "1 1 1 ] Shape \"sphere\"").warnings.empty()) << space;
+        EXPECT_TRUE(read_world(text + "0 1 0 ] Shape \"sphere\"").warnings.empty()) << space;
+        EXPECT_EQ(read_world(text + "1.1 1 1 ] Shape \"sphere\"").warnings.size(), 1u) << space;
+    }
+}
+
 TEST(SceneMaterials, TheCameraStandsInItsMedium) {
     const std::string fog =
         "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"fog\"\n"
