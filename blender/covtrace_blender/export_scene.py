@@ -54,6 +54,8 @@ class SceneExporter(Instances):
     def write(self):
         """The path of a file that holds the scene as its camera sees it."""
         self.warnings += self.camera.left_out()
+        if self.scene.render.film_transparent and getattr(getattr(self.scene, "cycles", None), "film_transparent_glass", False):
+            self.warn("Transparent Glass of the film is left out: glass before it is opaque")
         moving, self.shutter = self.look_at_close()
         path = os.path.join(self.folder, "scene.pbrt")
         try:

@@ -39,7 +39,7 @@ def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1
             _write_light(out, light, os.path.join(folder, f"world {rays[0]}.pfm"), hidden)
             is_dark = False
     if is_dark:
-        out.write('LightSource "infinite" "rgb L" [0 0 0]\n')
+        _write_light(out, (0, 0, 0), "", hidden_from(() if is_seen else ("camera",)))
 
 
 # Kinds of rays that find a sky.

@@ -37,8 +37,10 @@ def composed(found):
     matte, caught, bare = (found[picture] for picture in (MATTE, CAUGHT, BARE))
     light = bare[..., :3]
     # Other things may add to the light of a channel, as a red one beside does.
-    left = np.where(light > LEAST_LIGHT, caught[..., :3] / np.maximum(light, LEAST_LIGHT), 1)
-    alpha = np.clip(1 - (1 - matte[..., 3:]) * left.mean(-1, keepdims=True), 0, 1)
+    left = np.where(light > LEAST_LIGHT, caught[..., :3] / np.maximum(light, LEAST_LIGHT), 1).mean(-1, keepdims=True)
+    # Filters carry some light over the edge of a catcher, where shares of it mean nothing.
+    left = 1 - bare[..., 3:] * (1 - left)
+    alpha = np.clip(1 - (1 - matte[..., 3:]) * left, 0, 1)
     if BEHIND in found:
         return np.concatenate((matte[..., :3] + (1 - alpha) * found[BEHIND][..., :3], np.ones_like(alpha)), axis=-1)
     return np.concatenate((matte[..., :3], alpha), axis=-1)

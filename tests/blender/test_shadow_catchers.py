@@ -49,3 +49,22 @@ class ShadowCatchersTest(BlenderTest):
         self.plane(material(**self.MATT), size=6).is_shadow_catcher = True
         self.assert_quarters()
         self.assertEqual(picture("COVTRACE", 16)[..., 3].min(), 1)
+
+    def test_catchers_end_before_the_sky(self):
+        self.camera.location, self.camera.rotation_euler = (0, -5, 2.2), (1.3, 0, 0)
+        self.plane(material(**self.MATT), size=12).is_shadow_catcher = True
+        ours = self.assert_quarters()
+        self.assertLess(ours[:HEIGHT // 4, :, 3].max(), 0.01)
+
+    def test_films_are_transparent_before_black_worlds(self):
+        for color in ((0, 0, 0, 1), None):
+            if color:
+                self.background.inputs["Color"].default_value = color
+            else:
+                self.scene.world.node_tree.links.remove(self.background.outputs[0].links[0])
+            self.assertEqual(picture("COVTRACE", 16)[0, 0].tolist(), [0, 0, 0, 0])
+
+    def test_transparent_glass_is_told(self):
+        self.scene.cycles.film_transparent_glass = True
+        self.export()
+        self.assertIn("Transparent Glass", " ".join(self.warnings))
