@@ -132,7 +132,9 @@ class CovtraceEngine(bpy.types.RenderEngine):
         self._tell("exporting the scene")
         layer = depsgraph.view_layer
         told, found, region = [], {}, None
-        for picture in shadow_catchers.pictures(depsgraph):
+        pictures = shadow_catchers.pictures(depsgraph)
+        for number, picture in enumerate(pictures):
+            self._done, self._share = number / len(pictures), 1 / len(pictures)
             own_folder = os.path.join(folder, picture or "whole")
             os.mkdir(own_folder)
             exporter = export_scene.SceneExporter(self, depsgraph, own_folder, self._tell, picture)
@@ -146,12 +148,13 @@ class CovtraceEngine(bpy.types.RenderEngine):
                     self.report({"WARNING"}, text)
             told += exporter.warnings
             image = os.path.join(own_folder, "image.exr")
-            code = self._run(self._command(program, file, image, scene.covtrace, layer))
+            code = self._run(self._command(program, file, image, scene.covtrace, layer, scene.covtrace.seconds * self._share))
             if os.path.exists(image):
                 found[picture] = self._with_alpha(layers.read(image), scene.render.film_transparent, picture)
             if code != 0:
                 break
-        if code == 0 and None not in found:
+        # What is cancelled shows what there is.
+        if code in (0, 6) and shadow_catchers.MATTE in found:
             found = {None: self._composed(found)}
         if None in found:
             self._show(found[None], region, layer)
@@ -161,7 +164,8 @@ class CovtraceEngine(bpy.types.RenderEngine):
             raise RuntimeError(f"covtrace: {self._last_error or f'it ended with exit code {code}'}")
 
     @staticmethod
-    def _command(program, file, image, chosen, layer):
+    def _command(program, file, image, chosen, layer, seconds):
+        """seconds: the most that it may render, 0 without a limit."""
         layer_names = LAYERS if chosen.method == "uniform" else f"{LAYERS},{PREDICTED_LAYERS}"
         if layer.use_pass_position:
             layer_names += ",P"
@@ -169,8 +173,8 @@ class CovtraceEngine(bpy.types.RenderEngine):
                    "--layer-names", "blender", "--layers", layer_names, "--seed", str(chosen.seed)]
         # Whichever comes first; a view layer's own samples go before those of the panel.
         command += ["--spp", repr(float(layer.samples) or chosen.samples)]
-        if chosen.seconds > 0:
-            command += ["--time", f"{chosen.seconds:.3f}"]
+        if seconds > 0:
+            command += ["--time", f"{seconds:.3f}"]
         if chosen.error > 0 and chosen.method != "covariance":
             command += ["--error", repr(chosen.error)]
         if not chosen.denoise:
@@ -221,19 +225,20 @@ class CovtraceEngine(bpy.types.RenderEngine):
 
     def _follow(self, stream):
         """On a thread of its own: keeps the last progress and the last message."""
-        for line in stream:
-            try:
-                self._progress = json.loads(line)
-            except ValueError:
-                if line.strip():
-                    self._last_error = line.strip()
-                    print("covtrace:", line.strip())
+        with stream:
+            for line in stream:
+                try:
+                    self._progress = json.loads(line)
+                except ValueError:
+                    if line.strip():
+                        self._last_error = line.strip()
+                        print("covtrace:", line.strip())
 
     def _show_progress(self):
         p = self._progress
         if not p:
             return
-        self.update_progress(p["fraction"])
+        self.update_progress(self._done + self._share * p["fraction"])
         # Without a window each text is a line of the log.
         now = time.monotonic()
         if bpy.app.background and now < self._next_line:

@@ -97,7 +97,12 @@ class SceneCamera:
         return (x1 - x0) / self.size[0], self._object().data.type != "ORTHO"
 
     def left_out(self):
-        """Texts that tell what its lens has in Blender and not here."""
+        """Texts that tell what its lens and film have in Blender and not here."""
+        is_glass_clear = self.scene.render.film_transparent and getattr(getattr(self.scene, "cycles", None), "film_transparent_glass", False)
+        glass = ["Transparent Glass of the film is left out: glass before it is opaque"] if is_glass_clear else []
+        return glass + self._left_out_of_lens()
+
+    def _left_out_of_lens(self):
         data = self._object().data
         dof = data.dof
         if not dof.use_dof:

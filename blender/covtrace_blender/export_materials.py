@@ -30,10 +30,10 @@ WITHOUT_MATERIAL = types.SimpleNamespace(name="", name_full="", pass_index=0)  #
 class Variant:
     """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, the
     names of the UV maps that it reads ("" is the mesh's), and the name of the medium that fills what it is on, or "". body:
-    the Body whose atlas stands for the UV map, or None. is_light_alone: whether it is no surface but for its light. tangent: the Tangent that it
-    wants of its mesh, or None."""
+    the Body whose atlas stands for the UV map, or None. is_light_alone, is_volume_alone: whether it is no surface but
+    for its light, or its medium. tangent: the Tangent that it wants of its mesh, or None."""
 
-    body, is_light_alone = None, False
+    body, is_light_alone, is_volume_alone = None, False, False
 
     def __init__(self, rays, name, emission=None, alpha="", uv_maps=(), medium="", tangent=None):
         self.rays, self.name, self.emission, self.alpha, self.uv_maps = rays, name, emission, alpha, uv_maps
@@ -90,7 +90,8 @@ class MaterialExporter(SumExporter):
         for text in told:
             warn(text)
         for variant in exported:
-            variant.body, variant.is_light_alone = self.surface.body, variant.name in self.interfaces and not variant.medium
+            variant.body, is_alone = self.surface.body, variant.name in self.interfaces
+            variant.is_light_alone, variant.is_volume_alone = is_alone and not variant.medium, is_alone and bool(variant.medium)
         return exported
 
     # -- shaders
@@ -98,7 +99,7 @@ class MaterialExporter(SumExporter):
     def _variants(self, material):
         self.name = material.name if material else "none"
         if material is WITHOUT_MATERIAL:
-            return [Variant(RAYS, self._make("interface", []), medium=self._medium(None))]
+            return [Variant(RAYS, self._interface(), medium=self._medium(None))]
         if material is None or not material.use_nodes or not material.node_tree:
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
@@ -141,7 +142,7 @@ class MaterialExporter(SumExporter):
             # A body that is nothing but its volume.
             if node and not self.is_of_volume:
                 self._tell_of_tint(node)
-            return self._make("interface", []), None, "", (), medium, None
+            return self._interface(), None, "", (), medium, None
         if node is None:
             return self._black(), None, "", (), "", None
         self.in_full = self._has_sum(node)

@@ -45,7 +45,7 @@ class SceneExporter(Instances):
     def __init__(self, engine, depsgraph, folder, tell=lambda text: None, picture=None):
         super().__init__(engine, depsgraph, SceneCamera(depsgraph.scene, depsgraph))
         self.folder, self.tell, self.layer = folder, tell, depsgraph.view_layer_eval
-        self.warnings, self.picture = [], picture
+        self.warnings, self.picture, self.volume_objects = [], picture, VolumeObjects(folder, self.warn)
 
     def warn(self, text):
         if text not in self.warnings:
@@ -54,8 +54,6 @@ class SceneExporter(Instances):
     def write(self):
         """The path of a file that holds the scene as its camera sees it."""
         self.warnings += self.camera.left_out()
-        if self.scene.render.film_transparent and getattr(getattr(self.scene, "cycles", None), "film_transparent_glass", False):
-            self.warn("Transparent Glass of the film is left out: glass before it is opaque")
         moving, self.shutter = self.look_at_close()
         path = os.path.join(self.folder, "scene.pbrt")
         try:
@@ -139,8 +137,8 @@ class SceneExporter(Instances):
                 if self._add_volume(found, instance, self._variants(obj, slot, mesh), hidden, lambda: Solid(mesh)):
                     break
             obj.to_mesh_clear()
-        if found and not self.is_preview and self.scene.render.film_transparent:
-            self.warn("volumes before the transparent film have less opacity than in Cycles")
+        if found and not self.is_preview and (self.scene.render.film_transparent or self.picture):
+            self.warn("volumes before a transparent film or shadow catchers have less opacity than in Cycles")
         return found
 
     def _add_volume(self, found, instance, variants, hidden, make_solid):
@@ -148,8 +146,8 @@ class SceneExporter(Instances):
         filled = [variant for variant in variants if variant.medium and set(variant.rays) - hidden]
         if filled:
             rays = {ray for variant in filled for ray in variant.rays} - hidden
-            medium = self.materials.media.placed(filled[0].medium, instance.matrix_world)
-            found.add(instance.object, make_solid, instance.matrix_world, medium, rays)
+            found.add(instance.object, make_solid, instance.matrix_world, self.materials.media.placed(filled[0].medium, instance.matrix_world), rays)
+            self.visibility.note_volume(instance, filled)
         return bool(filled)
 
     def _volume_variants(self, obj):
@@ -372,7 +370,7 @@ class SceneExporter(Instances):
             elif obj.type == "VOLUME":
                 varying.add_volume()
         self.most_places = varying.most_places(self.is_preview)
-        self.volume_objects = VolumeObjects(self.placements, self.folder, self.warn, self.most_places)
+        self.volume_objects.placements, self.volume_objects.most = self.placements, self.most_places
 
     def _parts(self, variants, positions, normals, uvs, triangles, motion=None, tangents=None, tube_sides=0):
         file = f"mesh{len(os.listdir(self.folder))}.ply"

@@ -9,7 +9,7 @@ from .shutter import has_blurred_shape, is_blurred, shutter_times
 
 
 class Instances:
-    """The base of an exporter with engine, depsgraph, scene, frame and camera as SceneExporter has them. is_preview: whether it is for a
+    """The base of an exporter with engine, depsgraph, scene, frame, camera and volume_objects as SceneExporter has them. is_preview: whether it is for a
     viewport; shutter: (open, close) in frames, or None; still: matrices by key of what is not blurred; still_shapes, closing: places of
     vertices by name."""
 
@@ -23,10 +23,14 @@ class Instances:
         if not self.scene.render.use_motion_blur:
             return {}, None
         frame, (opening, closing) = self.frame, shutter_times(self.scene)
-        if not self.camera.is_blurred() or not all(is_blurred(instance) and has_blurred_shape(instance.object) for _, instance in self.instances()):
+        if not self.camera.is_blurred() or not all(is_blurred(instance) and has_blurred_shape(instance.object) and instance.object.type != "VOLUME"
+                                                   for _, instance in self.instances()):
             self.go_to(frame + 0.5 * (opening + closing))
         self.still = {key: instance.matrix_world.copy() for key, instance in self.instances() if not is_blurred(instance)}
         self.still_shapes = self._shapes(is_blurred=False)
+        for obj in (instance.object for _, instance in self.instances()):
+            if obj.type == "VOLUME" and self.is_own(obj):
+                self.volume_objects.keep(obj)
         self.camera.hold_if_sharp()
         self.go_to(frame + closing)
         matrices = {key: instance.matrix_world.copy() for key, instance in self.instances()}

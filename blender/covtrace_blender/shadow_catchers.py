@@ -33,7 +33,9 @@ def hidden_in(picture, instance, hidden):
 
 def composed(found):
     """(h, w, 4) of {picture: (h, w, 4)}, of which those but for BEHIND have alpha and nothing behind them. As in Cycles: what is taken of the
-    catchers' light, in the mean of its channels, is opacity, and black."""
+    catchers' light, in the mean of its channels, is opacity, and black. The MATTE alone is itself, where others are missing."""
+    if CAUGHT not in found or BARE not in found:
+        return found[MATTE]
     matte, caught, bare = (found[picture] for picture in (MATTE, CAUGHT, BARE))
     light = bare[..., :3]
     # Other things may add to the light of a channel, as a red one beside does.

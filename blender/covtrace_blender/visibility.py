@@ -26,9 +26,7 @@ class Visibility:
         """The kinds of rays that an instance of the layer is hidden from; None where none sees it. Notes what the answer
         leaves out."""
         obj = instance.object
-        hidden = self._hidden(obj)
-        if instance.is_instance and instance.parent:
-            hidden |= self._hidden(instance.parent)
+        hidden = self._hidden_of(instance)
         if "camera" not in hidden and self._clipping.hides(instance):
             hidden.add("camera")
         hidden = hidden_in(self._picture, instance, hidden)
@@ -42,6 +40,14 @@ class Visibility:
         if self._picture is None and is_catcher(instance):
             self._note("rendered as surfaces although they catch shadows", obj)
         return hidden
+
+    def note_volume(self, instance, variants):
+        """Notes an instance that is hidden from some kinds of rays where these Variants are its volume alone: media end there for all rays."""
+        if any(variant.is_volume_alone for variant in variants) and self._hidden_of(instance):
+            self._note("volumes that all rays see alike", instance.object)
+
+    def _hidden_of(self, instance):
+        return self._hidden(instance.object) | (self._hidden(instance.parent) if instance.is_instance and instance.parent else set())
 
     def _hidden(self, obj):
         hidden = {ray for ray in RAYS if not getattr(obj, _PROPERTIES[ray])}

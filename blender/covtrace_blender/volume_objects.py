@@ -27,12 +27,17 @@ def _asked_grids(material):
 
 
 class VolumeObjects:
-    """Grids of evaluated objects. placements: Placements of all instances; folder: for files that are gone at once; most: places of a
-    lattice."""
+    """Grids of evaluated objects. folder: for files that are gone at once. Before a space() is asked for: placements, the Placements of all
+    instances, and most, places of a lattice."""
 
-    def __init__(self, placements, folder, warn, most):
-        self._placements, self._folder, self._warn, self._most = placements, folder, warn, most
-        self._grids, self._module = {}, openvdb_grids.library()
+    def __init__(self, folder, warn):
+        self.placements, self.most, self._folder, self._warn = None, 0, folder, warn
+        self._grids, self._kept, self._module = {}, {}, openvdb_grids.library()
+
+    def keep(self, obj):
+        """Keeps the grids of an object whose data are its own as they are now, whatever frame is gone to."""
+        if obj.name_full not in self._kept and self.material(obj.data.materials):
+            self._kept[obj.name_full] = self._read(obj)
 
     def material(self, materials):
         """That of a volume object with these in its slots; None where it shows nothing."""
@@ -43,16 +48,18 @@ class VolumeObjects:
     def space(self, obj, material):
         """The VolumeSpace of an object; None where it has no grid that its material asks for."""
         grids = self._grids_of(obj)
-        matrix = np.array(self._placements.first_matrix(obj))
+        matrix = np.array(self.placements.first_matrix(obj))
         # Cycles measures along the diagonal. By the object's space what is larger is not less clear.
         along = np.linalg.norm(matrix[:3, :3] @ np.ones(3)) / math.sqrt(3)
         density = 1 / max(along, 1e-30) if obj.data.render.space == "OBJECT" else 1.0
-        space = grids and grids.space(_asked_grids(material), self._most, float(f"{density:.6g}"))
+        space = grids and grids.space(_asked_grids(material), self.most, float(f"{density:.6g}"))
         if space:
-            space.matrix = self._placements.only_matrix(obj)
+            space.matrix = self.placements.only_matrix(obj)
         return space
 
     def _grids_of(self, obj):
+        if obj.name_full in self._kept:
+            return self._kept[obj.name_full]
         key = obj.data.as_pointer()
         if key not in self._grids:
             self._grids[key] = self._read(obj)

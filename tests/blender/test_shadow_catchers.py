@@ -1,8 +1,11 @@
 """Transparent films and shadow catchers, against Cycles."""
 
+import unittest.mock
+
 import bpy
 import numpy as np
 from addon_support import BlenderTest, material, render
+from covtrace_blender import engine
 
 WIDTH, HEIGHT = 96, 72  # of fewer pixels more are edges, about which the pictures are filtered apart
 
@@ -63,6 +66,19 @@ class ShadowCatchersTest(BlenderTest):
             else:
                 self.scene.world.node_tree.links.remove(self.background.outputs[0].links[0])
             self.assertEqual(picture("COVTRACE", 16)[0, 0].tolist(), [0, 0, 0, 0])
+
+    def test_what_is_cancelled_shows_what_there_is(self):
+        self.plane(material(**self.MATT), size=6).is_shadow_catcher = True
+        run, commands = engine.CovtraceEngine._run, []
+
+        def run_first(self, command):
+            commands.append(command)
+            return run(self, command) if len(commands) == 1 else 6
+
+        self.scene.covtrace.seconds = 30
+        with unittest.mock.patch.object(engine.CovtraceEngine, "_run", run_first):
+            self.assertGreater(picture("COVTRACE", 4)[..., 0].max(), 0.1)
+        self.assertEqual([command[command.index("--time") + 1] for command in commands], ["10.000", "10.000"])
 
     def test_transparent_glass_is_told(self):
         self.scene.cycles.film_transparent_glass = True

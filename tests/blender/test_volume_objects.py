@@ -75,6 +75,27 @@ class VolumeObjectsTest(BlenderTest):
         m.node_tree.links.new(node.outputs[0], output.inputs["Volume"])
         return m
 
+    def test_blur_takes_the_grids_of_the_middle(self):
+        obj, _ = self.volume(self.smoke())
+        obj.data.is_sequence = True
+        self.scene.render.use_motion_blur = True
+        name = self.path.replace(".vdb", "_%04d.vdb")
+        texts = []
+        for frame, strength in ((1, 1), (2, 5)):
+            VDB.write(name % frame, grids=[self.grid("density", np.full((4, 4, 4), strength), 0.5)])
+        obj.data.filepath, obj.data.frame_start, obj.data.frame_duration = name % 1, 1, 2
+        for frame in (1, 2):
+            self.scene.frame_set(frame)
+            texts.append(self.export())
+        self.assertIn("uniformgrid", texts[0])
+        self.assertNotEqual(texts[0].split("density")[-1][:200], texts[1].split("density")[-1][:200])
+
+    def test_ray_visibility_is_told(self):
+        obj, _ = self.volume(self.smoke())
+        obj.visible_camera = False
+        self.export()
+        self.assertIn("volumes that all rays see alike", " ".join(self.warnings))
+
     def test_smoke_of_a_file(self):
         self.volume(self.smoke(), Color=(0.8, 0.6, 0.4, 1), Density=1.5)
         self.point((1, 0, 2), 300)
@@ -196,7 +217,7 @@ class VolumeObjectsTest(BlenderTest):
         self.volume(self.smoke())
         self.scene.render.film_transparent = True
         self.export()
-        self.assertEqual(self.warnings, ["volumes before the transparent film have less opacity than in Cycles"])
+        self.assertEqual(self.warnings, ["volumes before a transparent film or shadow catchers have less opacity than in Cycles"])
 
     def test_layers_without_volumes(self):
         self.volume(self.smoke())
