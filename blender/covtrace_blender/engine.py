@@ -153,7 +153,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
                 found[picture] = self._with_alpha(layers.read(image), scene.render.film_transparent, picture)
             if code != 0:
                 break
-        # What is cancelled shows what there is.
+        # A cancelled render shows what there is.
         if code in (0, 6) and shadow_catchers.MATTE in found:
             found = {None: self._composed(found)}
         if None in found:
