@@ -4,7 +4,6 @@ import io
 import os
 
 import numpy as np
-from mathutils import Vector
 
 from . import attributes, export_lights, export_meshes, export_motion, export_strands, export_world, islands, ply
 from .atlases import Atlases
@@ -184,7 +183,7 @@ class SceneExporter(Instances):
                 parts = [part for part in exported[shown] if set(part.variant.rays) - hidden]
                 if not parts:
                     continue
-                around = self._media_around(obj, matrix) if any(part.variant.medium for part in parts) else ()
+                around = self.volumes.around(obj, matrix, self.warn) if any(part.variant.medium for part in parts) else ()
                 media = self.materials.media
                 stands_alone = any(part.variant.emission or media.varies(part.variant.medium) for part in parts)
                 if instance.is_instance and not stands_alone:
@@ -393,8 +392,3 @@ class SceneExporter(Instances):
             self.warn(f"object '{obj.name}' bends more while the shutter is open than {len(motions)} pieces that each "
                       f"move as one can follow: {100 * left:.0f} % of the way are left out")
         return piece, motions
-
-    def _media_around(self, obj, matrix):
-        """The names of the media that an object stands in, by the middle of the box around it."""
-        middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
-        return self.volumes.media_at(matrix @ middle, obj.name_full)

@@ -7,6 +7,10 @@ import numpy as np
 from .coefficients import Coefficients
 from .placement import matrix_text
 from .shader_nodes.light_path import RAYS
+from .volume_lattice import moved
+
+MOST_TRIED = 32  # vertices of which it is asked whether they stick out
+INWARDS = 0.999  # of the way from the middle, as volumes may touch
 
 
 class VaryingMedium:
@@ -98,7 +102,7 @@ class Volumes:
 
     def __init__(self, everywhere=()):
         self._everywhere = everywhere
-        self._solids, self._bodies, self._inverses = {}, [], []
+        self._solids, self._bodies, self._inverses, self._is_told = {}, [], [], False
 
     def add(self, obj, make_solid, matrix, medium, rays):
         """make_solid: gives the Solid or Box of the object, which instances share; rays: the kinds that see it."""
@@ -119,6 +123,21 @@ class Volumes:
         """(inverse matrix, low and high corner in its own space) of each body."""
         solids = [solid for _, solid, _, _ in self._bodies]
         return np.array(self._inverses), np.array([s.low for s in solids]), np.array([s.high for s in solids])
+
+    def around(self, obj, matrix, warn):
+        """The names of the media that an object stands in with its middle and all its outline: what is within its own volume is not around
+        it. matrix: its own, to the world; warn(text): is told once where one sticks out of another."""
+        corners, matrix = np.array([tuple(corner) for corner in obj.bound_box]), np.array(matrix)
+        middle = corners.mean(0)
+        if obj.type == "MESH":
+            vertices = obj.data.vertices
+            corners = np.array([tuple(vertices[i].co) for i in range(0, len(vertices), -(-len(vertices) // MOST_TRIED))])
+        places = moved(middle + INWARDS * (corners - middle), matrix)
+        outline = [set(self.media_at(place, obj.name_full)) for place in places]
+        if not self._is_told and any(media != outline[0] for media in outline):
+            self._is_told = True
+            warn(f"volumes that overlap in part, as '{obj.name}' and another one, are not right there")
+        return tuple(name for name in self.media_at(moved(middle, matrix), obj.name_full) if all(name in media for media in outline))
 
     def media_at(self, place, but="", rays=RAYS):
         """The names of the media of all that hold a place of the world and that one of these kinds of rays sees; `but`: the

@@ -11,7 +11,7 @@ from importlib import machinery, util
 import bpy
 import numpy as np
 
-from .volume_lattice import Lattice, VolumeSpace
+from .volume_lattice import Lattice, VolumeSpace, moved
 
 MODULES = ("openvdb", "pyopenvdb")  # Debian 12 has the latter
 OFFSET = 0.5 if bpy.app.version < (5, 0, 0) else 0.0
@@ -59,11 +59,6 @@ def index_to_object(grid):
 def corners_of(low, high):
     """(8, 3) of a box."""
     return np.array(list(itertools.product(*zip(low, high))))
-
-
-def moved(places, matrix):
-    """(n, 3) places by a 4x4 matrix."""
-    return places @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 class Blocks:

@@ -42,6 +42,11 @@ class VolumeSpace:
         return (self.low + np.random.default_rng(0).random((count, 3)) * (self.high - self.low)).astype(np.float32)
 
 
+def moved(places, matrix):
+    """(n, 3) places by a 4x4 matrix."""
+    return places @ matrix[:3, :3].T + matrix[:3, 3]
+
+
 class Lattice:
     """Places in the middles of nearly cubic cells that fill a box, and one more beyond each of its sides: between places values are linear,
     and at the box itself they are not to fall. shape: numbers of places along x, y, z, `low` and `high`: corners of the cells."""

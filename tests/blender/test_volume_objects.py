@@ -90,6 +90,18 @@ class VolumeObjectsTest(BlenderTest):
         self.assertIn("uniformgrid", texts[0])
         self.assertNotEqual(texts[0].split("density")[-1][:200], texts[1].split("density")[-1][:200])
 
+    def test_overlaps_in_part_are_told(self):
+        self.volume(self.smoke())
+        self.body((0, 0, 0), (1, 1, 1), "ShaderNodeVolumeScatter")
+        fog = bpy.context.object
+        for size, count in ((20, 0), (0.3, 0), (1, 1)):
+            fog.scale, fog.location = (size,) * 3, (1.2 if count else 0, 0, 0)
+            bpy.context.view_layer.update()
+            text = self.export()
+            if size == 20:  # around the fog there is nothing, though its middle is in the smoke
+                self.assertRegex(text, r'MediumInterface "medium \d+" ""')
+            self.assertEqual(sum("overlap in part" in text for text in self.warnings), count, f"{size}: {self.warnings}")
+
     def test_ray_visibility_is_told(self):
         obj, _ = self.volume(self.smoke())
         obj.visible_camera = False
