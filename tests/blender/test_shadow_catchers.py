@@ -27,12 +27,12 @@ class ShadowCatchersTest(BlenderTest):
         bpy.context.object.data.materials.append(material(Base_Color=(0.8, 0.2, 0.1, 1), Specular=0.0, Roughness=1.0))
         self.lamp("SUN", energy=3, angle=0.2).rotation_euler = (0.6, 0.5, 0)
 
-    def assert_quarters(self, delta=0.005):
-        """The means of the quarters of all four channels agree."""
+    def assert_quarters(self, delta=0.005, channels=slice(0, 4)):
+        """The means of the quarters of these channels agree."""
         ours, theirs = picture("COVTRACE"), picture("CYCLES", 256)
         for y in (slice(0, HEIGHT // 2), slice(HEIGHT // 2, HEIGHT)):
             for x in (slice(0, WIDTH // 2), slice(WIDTH // 2, WIDTH)):
-                a, b = ours[y, x].mean((0, 1)), theirs[y, x].mean((0, 1))
+                a, b = ours[y, x].mean((0, 1))[channels], theirs[y, x].mean((0, 1))[channels]
                 self.assertLess(np.abs(a - b).max(), delta, f"{a}, {b}")
         return ours
 
@@ -56,7 +56,8 @@ class ShadowCatchersTest(BlenderTest):
     def test_catchers_end_before_the_sky(self):
         self.camera.location, self.camera.rotation_euler = (0, -5, 2.2), (1.3, 0, 0)
         self.plane(material(**self.MATT), size=12).is_shadow_catcher = True
-        ours = self.assert_quarters()
+        # Rough surfaces are brighter from the side in Cycles 3.4, as it sends back more light than falls on them.
+        ours = self.assert_quarters(channels=slice(3, 4) if bpy.app.version < (4, 0, 0) else slice(0, 4))
         self.assertLess(ours[:HEIGHT // 4, :, 3].max(), 0.01)
 
     def test_films_are_transparent_before_black_worlds(self):
