@@ -109,6 +109,7 @@ for name in ("bpy", "bpy_extras", "gpu", "gpu_extras", "gpu_extras.presets", "ma
     sys.modules[name] = MagicMock()
 for name in ("AddonPreferences", "PropertyGroup", "Panel", "RenderEngine"):
     setattr(sys.modules["bpy"].types, name, type(name, (), {}))
+sys.modules["bpy"].app.version = (4, 2, 0)
 import importlib, pkgutil
 package = importlib.import_module("covtrace_blender")
 print(*sorted(m.name for m in pkgutil.walk_packages(package.__path__, "covtrace_blender.") if importlib.import_module(m.name)))
