@@ -77,6 +77,30 @@ def socket(principled, name):
     return principled.inputs[SINCE_4.get(name, name) if bpy.app.version >= (4, 0, 0) else name]
 
 
+def volume_material(kind, **inputs):
+    """A material whose volume is a shader of this kind."""
+    m = bpy.data.materials.new("filled")
+    m.use_nodes = True
+    m.node_tree.nodes.clear()
+    output, node = m.node_tree.nodes.new("ShaderNodeOutputMaterial"), m.node_tree.nodes.new(kind)
+    for name, value in inputs.items():
+        node.inputs[name.replace("_", " ")].default_value = value
+    m.node_tree.links.new(node.outputs[0], output.inputs["Volume"])
+    return m
+
+
+def geometry_tree(name):
+    """A tree of geometry nodes, without any, from a geometry to another."""
+    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        for way in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    else:
+        tree.inputs.new("NodeSocketGeometry", "Geometry")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    return tree
+
+
 def material(name="material", **inputs):
     m = bpy.data.materials.new(name)
     m.use_nodes = True

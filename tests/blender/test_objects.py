@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, mean, render
+from addon_support import BlenderTest, geometry_tree, mean, render
 
 
 class ObjectsTest(BlenderTest):
@@ -62,13 +62,7 @@ class ObjectsTest(BlenderTest):
     def test_geometry_nodes_and_modifiers_are_evaluated(self):
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=2.4)
         grid = bpy.context.object
-        group = bpy.data.node_groups.new("scatter", "GeometryNodeTree")
-        if hasattr(group, "interface"):  # from Blender 4.0 on
-            for way in ("INPUT", "OUTPUT"):
-                group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-        else:
-            group.inputs.new("NodeSocketGeometry", "Geometry")
-            group.outputs.new("NodeSocketGeometry", "Geometry")
+        group = geometry_tree("scatter")
         nodes = group.nodes
         begin, end = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
         scatter, cone = nodes.new("GeometryNodeInstanceOnPoints"), nodes.new("GeometryNodeMeshCone")

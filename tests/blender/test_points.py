@@ -1,7 +1,7 @@
 """Point clouds, against Cycles."""
 
 import bpy
-from addon_support import CyclesTest
+from addon_support import CyclesTest, geometry_tree
 
 
 class PointsTest(CyclesTest):
@@ -9,13 +9,7 @@ class PointsTest(CyclesTest):
         """Points at the vertices of a grid that geometry nodes make, with a radius that grows along x."""
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=6, size=size)
         obj = bpy.context.object
-        tree = bpy.data.node_groups.new(group, "GeometryNodeTree")
-        if hasattr(tree, "interface"):
-            for side in ("INPUT", "OUTPUT"):
-                tree.interface.new_socket("Geometry", in_out=side, socket_type="NodeSocketGeometry")
-        else:
-            tree.inputs.new("NodeSocketGeometry", "Geometry")
-            tree.outputs.new("NodeSocketGeometry", "Geometry")
+        tree = geometry_tree(group)
         nodes, links = tree.nodes, tree.links
         start, points, coat, end = (nodes.new(kind) for kind in ("NodeGroupInput", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial",
                                                                   "NodeGroupOutput"))

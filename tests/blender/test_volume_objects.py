@@ -8,7 +8,7 @@ from unittest import mock
 import bpy
 import numpy as np
 import test_varying_volumes
-from addon_support import BlenderTest
+from addon_support import BlenderTest, geometry_tree, volume_material
 from covtrace_blender import openvdb_grids, volume_lattice
 
 VDB = openvdb_grids.library()
@@ -60,20 +60,8 @@ class VolumeObjectsTest(BlenderTest):
         bpy.context.view_layer.objects.active = obj
         if not kind:
             return obj, None
-        data.materials.append(self.filled(kind, **inputs))
+        data.materials.append(volume_material(kind, **inputs))
         return obj, data.materials[0]
-
-    @staticmethod
-    def filled(kind, **inputs):
-        """A material of a volume shader."""
-        m = bpy.data.materials.new("filled")
-        m.use_nodes = True
-        m.node_tree.nodes.clear()
-        output, node = m.node_tree.nodes.new("ShaderNodeOutputMaterial"), m.node_tree.nodes.new(kind)
-        for name, value in inputs.items():
-            node.inputs[name.replace("_", " ")].default_value = value
-        m.node_tree.links.new(node.outputs[0], output.inputs["Volume"])
-        return m
 
     def test_blur_takes_the_grids_of_the_middle(self):
         obj, _ = self.volume(self.smoke())
@@ -183,14 +171,8 @@ class VolumeObjectsTest(BlenderTest):
     def test_what_geometry_nodes_make_of_a_mesh(self):
         """At the mesh's own place, and in instances of it."""
         bpy.ops.mesh.primitive_cube_add(size=1.5)
-        cube, m = bpy.context.object, self.filled("ShaderNodeVolumePrincipled", Density=2.0, Color=(0.3, 0.2, 0.1, 1))
-        tree = bpy.data.node_groups.new("smoke", "GeometryNodeTree")
-        if hasattr(tree, "interface"):
-            for way in ("INPUT", "OUTPUT"):
-                tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-        else:
-            tree.inputs.new("NodeSocketGeometry", "Geometry")
-            tree.outputs.new("NodeSocketGeometry", "Geometry")
+        cube, m = bpy.context.object, volume_material("ShaderNodeVolumePrincipled", Density=2.0, Color=(0.3, 0.2, 0.1, 1))
+        tree = geometry_tree("smoke")
         nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", "GeometryNodeMeshToVolume", "GeometryNodeSetMaterial", "NodeGroupOutput")]
         for a, b in zip(nodes, nodes[1:]):
             tree.links.new(a.outputs[0], b.inputs[0])

@@ -3,7 +3,7 @@
 from unittest import mock
 
 import bpy
-from addon_support import BlenderTest, material, mean, render
+from addon_support import BlenderTest, material, mean, render, volume_material
 from covtrace_blender.solid import Solid
 
 VISIBLE = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow",
@@ -16,15 +16,11 @@ class VolumesTest(BlenderTest):
         bpy.ops.mesh.primitive_cube_add(size=1, location=place)
         box = bpy.context.object
         box.scale = size
-        m = bpy.data.materials.new("filled")
-        m.use_nodes = True
-        m.node_tree.nodes.clear()
-        output, node = m.node_tree.nodes.new("ShaderNodeOutputMaterial"), m.node_tree.nodes.new(kind)
-        for name, value in inputs.items():
-            node.inputs[name.replace("_", " ")].default_value = value
-        m.node_tree.links.new(node.outputs[0], output.inputs["Volume"])
+        m = volume_material(kind, **inputs)
         if surface:
-            m.node_tree.links.new(m.node_tree.nodes.new(surface).outputs[0], output.inputs["Surface"])
+            tree = m.node_tree
+            output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+            tree.links.new(tree.nodes.new(surface).outputs[0], output.inputs["Surface"])
         box.data.materials.append(m)
         return m
 
