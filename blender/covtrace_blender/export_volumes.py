@@ -50,7 +50,7 @@ class _Sockets:
         return self.grid_of(socket.default_value) if socket else None
 
     def grid_of(self, name):
-        """The same of a name."""
+        """(n, 3) of the attribute of this name; None where there is none."""
         return self._nodes.place.grid(name)
 
 

@@ -37,7 +37,7 @@ class Solid:
 
 
 class Box:
-    """The same of a box that lies along the axes."""
+    """A box that lies along the axes, and whether places are in it."""
 
     # Corners of its sides, anticlockwise from without; corner k is at the high end of x, y, z by the bits of k.
     TRIANGLES = np.array([(0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 2, 3), (0, 3, 1),

@@ -119,8 +119,8 @@ const ColorPlanes* difference_of_sights(const Denoised& clean) {
 
 /// The image that is the denoiser's alone, with the light that it lost: of DenoiserQuality::fast,
 /// and of the few samples of a pilot, whose halves are too noisy to tell where our own candidates
-/// are better: they would gain 2 % of the error in twice the time (docs/decisions/0157). `all`: the
-/// mean of the halves.
+/// are better: they would gain 2 % of the error at most in half as much time again
+/// (docs/decisions/0157). `all`: the mean of the halves.
 HybridImage denoisers_image(const Halves& halves, const ColorPlanes& all, const Denoised& clean,
                             float few, const HybridSettings& settings, float dark_squared) {
     HybridImage image;

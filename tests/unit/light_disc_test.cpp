@@ -92,6 +92,18 @@ TEST(DistantDisc, IsPartOfTheSkyThatRaysFind) {
     EXPECT_EQ(delta.lights->total_power(), s.lights->total_power());
 }
 
+TEST(DistantDisc, LeavesHolesWhereTheCameraSeesNoSky) {
+    LightScene s;
+    s.add_light(sun(10));
+    InfiniteLight sky;
+    sky.visible_to = kEveryRay & RayKinds(~set_of(RayKind::camera));
+    s.add_light(sky);
+    s.build();
+    EXPECT_TRUE(s.lights->has_sky());
+    EXPECT_FALSE(s.lights->has_sky_for(RayKind::camera));
+    EXPECT_TRUE(s.lights->has_sky_for(RayKind::glossy));
+}
+
 TEST(DistantDisc, IsHiddenFromSomeRays) {
     LightScene s;
     DistantLight light = sun(10);
