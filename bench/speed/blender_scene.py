@@ -2,15 +2,16 @@
 (`blender --background --factory-startup -noaudio --python` instead of `python`):
 
     python bench/speed/blender_scene.py -- make SCENE FOLDER WxH
-    python bench/speed/blender_scene.py -- render FOLDER/scene.blend SPP SEED THREADS IMAGE.exr [THRESHOLD]
+    python bench/speed/blender_scene.py -- render FOLDER/scene.blend SPP SEED THREADS IMAGE.exr [THRESHOLD [guided]]
 
 `make` writes FOLDER/scene.blend and, by the add-on's exporter, FOLDER/scene.pbrt with the same meshes, materials, lights,
 camera, motion and most bounces; it prints Blender's version. `render` is Cycles' render of the .blend: with a noise THRESHOLD
-by adaptive sampling and Open Image Denoise at high quality with prefiltered albedo and normal, else without both. It prints
-the CPU seconds of Blender's operator, which are without Blender's own start.
+by adaptive sampling and Open Image Denoise at high quality with prefiltered albedo and normal, else without both; `guided`,
+with path guiding as Cycles sets it. It prints the CPU seconds of Blender's operator, which are without Blender's own start.
 
 `moving-box`, `many-lamps` and `wide-lens` are one room with other things, lamps and lens: motion blur, shadows and depth of
-field. All is matt or metal, smooth or rough: what both engines compute alike."""
+field. `window`, `door-ajar` and `lampshade` are interiors, a closed room that sun and sky light through a window, a lamp through
+the slit of a door, and a lamp in a shade. All is matt or metal, smooth or rough: what both engines compute alike."""
 import math
 import pathlib
 import sys
@@ -89,6 +90,29 @@ def room():
     return background
 
 
+def closed_room(right_wall):
+    """A room around the camera, 6 wide, 6 deep and 3 high. The parts of its right wall are (location, size) along y and z."""
+    plaster, wood, green = matt("plaster", (0.75, 0.72, 0.68)), matt("wood", (0.35, 0.2, 0.1)), matt("green", (0.2, 0.4, 0.25))
+    for material, location, size in (
+            (wood, (0, 0, -0.05), (6.2, 6.2, 0.1)), (plaster, (0, 0, 3.05), (6.2, 6.2, 0.1)), (green, (0, 3.05, 1.5), (6.2, 0.1, 3)),
+            (plaster, (0, -3.05, 1.5), (6.2, 0.1, 3)), (plaster, (-3.05, 0, 1.5), (0.1, 6.2, 3)), (wood, (-0.6, 1, 0.75), (1.8, 0.9, 0.06)),
+            *((wood, (-0.6 + x, 1 + y, 0.36), (0.08, 0.08, 0.72)) for x in (-0.8, 0.8) for y in (-0.38, 0.38))):
+        block(material, location, size)
+    for (y, z), (depth, height) in right_wall:
+        block(plaster, (3.05, y, z), (0.1, depth, height))
+    ball(metal("mirror", (0.9, 0.9, 0.9), 0.05), (-0.9, 1, 0.98), 0.2)
+    ball(metal("rough", (0.9, 0.6, 0.3), 0.4), (-0.3, 0.9, 0.98), 0.2)
+    ball(matt("yellow", (0.8, 0.6, 0.1)), (1.2, 0.6, 0.4), 0.4)
+    bpy.ops.object.camera_add(location=(-0.8, -2.8, 1.6), rotation=(math.radians(84), 0, math.radians(-12)))
+    bpy.context.scene.camera = bpy.context.object
+    bpy.context.object.data.lens = 24
+    world = bpy.context.scene.world = bpy.data.worlds.new("sky")
+    world.use_nodes = True
+    background = world.node_tree.nodes["Background"].inputs
+    background["Color"].default_value, background["Strength"].default_value = (0.4, 0.55, 0.8, 1), 0
+    return background
+
+
 def metal_balls():
     ball(metal("mirror", (0.9, 0.9, 0.9), 0.05), (1.4, -1.2, 0.5), 0.5)
     ball(metal("rough", (0.9, 0.6, 0.3), 0.4), (0.2, -1.4, 0.4), 0.4)
@@ -144,7 +168,36 @@ def wide_lens():
     lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 7.4, 0.2
 
 
-SCENES = {"moving-box": moving_box, "many-lamps": many_lamps, "wide-lens": wide_lens}
+def window():
+    """Sun and sky through one window; the sun lights a patch of the floor, and that the room."""
+    sky = closed_room([((-2.05, 1.5), (2.1, 3)), ((2.05, 1.5), (2.1, 3)), ((0, 0.4), (2, 0.8)), ((0, 2.6), (2, 0.8))])
+    sky["Strength"].default_value = 1
+    bpy.ops.object.light_add(type="SUN", location=(8, 0, 6), rotation=(math.radians(12), math.radians(55), 0))
+    bpy.context.object.data.energy, bpy.context.object.data.angle = 8, math.radians(0.53)
+
+
+def door_ajar():
+    """A dark room beside a lit one, whose door stands ajar."""
+    closed_room([((-1.7, 1.5), (2.8, 3)), ((2.05, 1.5), (2.1, 3)), ((0.35, 2.55), (1.3, 0.9))])
+    block(matt("door", (0.6, 0.55, 0.5)), (3.05, 0.22, 1.05), (0.06, 1.04, 2.1))
+    plaster = matt("other room", (0.75, 0.72, 0.68))
+    for location, size in (((5.1, 0, -0.05), (4, 6.2, 0.1)), ((5.1, 0, 3.05), (4, 6.2, 0.1)), ((7.05, 0, 1.5), (0.1, 6.2, 3)),
+                           ((5.1, 3.05, 1.5), (4, 0.1, 3)), ((5.1, -3.05, 1.5), (4, 0.1, 3))):
+        block(plaster, location, size)
+    bpy.ops.object.light_add(type="AREA", location=(5.1, 0, 2.95))
+    bpy.context.object.data.energy, bpy.context.object.data.size = 300, 0.8
+
+
+def lampshade():
+    """A bulb in a shade that is open above and below, and nothing else that shines."""
+    closed_room([((0, 1.5), (6.2, 3))])
+    ball(shining("bulb", (1, 0.8, 0.5), 300), (0.8, 1.6, 1.35), 0.05)
+    bpy.ops.mesh.primitive_cone_add(vertices=48, radius1=0.35, radius2=0.2, depth=0.5, end_fill_type="NOTHING", location=(0.8, 1.6, 1.4))
+    with_material(matt("shade", (0.8, 0.7, 0.5)))
+
+
+SCENES = {"moving-box": moving_box, "many-lamps": many_lamps, "wide-lens": wide_lens,
+          "window": window, "door-ajar": door_ajar, "lampshade": lampshade}
 
 
 def make(name, folder, resolution):
@@ -190,7 +243,14 @@ def denoise(settings):
         settings.denoising_quality = "HIGH"
 
 
-def render(blend, samples, seed, threads, image, threshold):
+def guide_paths(settings):
+    import _cycles  # of the add-on cycles
+    if not _cycles.with_path_guiding:
+        sys.exit("this Blender is built without path guiding")
+    settings.use_guiding = True
+
+
+def render(blend, samples, seed, threads, image, threshold=None, guided=False):
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
     settings = scene.cycles
@@ -201,6 +261,9 @@ def render(blend, samples, seed, threads, image, threshold):
     if threshold is not None:
         settings.use_adaptive_sampling, settings.adaptive_threshold = True, threshold
         denoise(settings)
+    settings.use_guiding = False
+    if guided:
+        guide_paths(settings)
     scene.render.threads_mode, scene.render.threads = "FIXED", threads
     written = scene.render.image_settings
     written.file_format, written.color_depth, written.color_mode = "OPEN_EXR", "32", "RGB"
@@ -217,8 +280,8 @@ def main():
         make(name, pathlib.Path(folder), resolution)
         print(f"Blender: {bpy.app.version_string}")
     else:
-        blend, samples, seed, threads, image, *threshold = arguments
-        render(blend, int(samples), int(seed), int(threads), image, float(threshold[0]) if threshold else None)
+        blend, samples, seed, threads, image, *denoised = arguments
+        render(blend, int(samples), int(seed), int(threads), image, *([float(denoised[0]), "guided" in denoised] if denoised else []))
 
 
 main()
