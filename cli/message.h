@@ -19,11 +19,14 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
     std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
+/// The text of a warning, behind its place.
+inline std::string to_text(const Warning& w) {
+    const std::string where = w.where.to_string();
+    return where.empty() ? w.text : where + ": " + w.text;
+}
+
 inline void print_warnings(const Warnings& warnings) {
-    for (const Warning& w : warnings) {
-        const std::string where = w.where.to_string();
-        say("warning: {}{}{}\n", where, where.empty() ? "" : ": ", w.text);
-    }
+    for (const Warning& w : warnings) say("warning: {}\n", to_text(w));
 }
 
 }  // namespace covtrace::cli

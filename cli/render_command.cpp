@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <ctime>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/failure.h"
+#include "cli/frames.h"
 #include "cli/interrupts.h"
 #include "cli/memory_limit.h"
 #include "cli/message.h"
@@ -71,6 +75,9 @@ void parse_texts(RenderArguments& a) {
     resolve(a.display);
     if (a.tev.empty() && (a.tev_layers.all || !a.tev_layers.names.empty()))
         throw Error(ErrorKind::usage, "--tev-layers: expected --tev HOST:PORT");
+    if (a.frames && a.scene == kStandardInput)
+        throw Error(ErrorKind::usage,
+                    "SCENE: standard input is read once; --frames expects a file");
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
         throw Error(
             ErrorKind::usage,
@@ -124,14 +131,19 @@ FoundDenoiser denoiser_of(const RenderArguments& a, bool is_first) {
     return find(a.denoiser);
 }
 
-/// Builds a scene that the end of the process frees at once: taking millions of instances apart one
-/// by one takes seconds, after all that was asked for is done.
-RenderScene& kept_scene(SceneDescription description, const RenderArguments& a,
-                        const Monitor& monitor) {
-    static RenderScene* kept = nullptr;  // reachable, so that it does not count as a leak
-    kept = new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes,
-                           a.options.guides, [&monitor] { return monitor.cancelled(); });
+/// The scene that is rendered. The end of the process frees it at once: taking millions of
+/// instances apart one by one takes seconds, after all that was asked for is done.
+std::unique_ptr<RenderScene>& kept_scene() {
+    static auto* kept = new std::unique_ptr<RenderScene>;  // reachable, so that it is no leak
     return *kept;
+}
+
+RenderScene& build_scene(SceneDescription description, const RenderArguments& a,
+                         const Monitor& monitor) {
+    kept_scene() =
+        std::make_unique<RenderScene>(std::move(description), isa_name(a.isa), a.texture_bytes,
+                                      a.options.guides, [&monitor] { return monitor.cancelled(); });
+    return *kept_scene();
 }
 
 /// Reads the scene, with all that takes the place of its own values.
@@ -180,19 +192,24 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
         monitor.elapsed(), is_denoised_fast(result.image) ? ", denoised fast" : "");
 }
 
-/// Tells what of the options and of the scene is not done as they say.
+/// Tells what of the options and of the scene is not done as they say. `told`: what other frames
+/// have told of their scenes, which is not told again.
 void tell_warnings(const RenderArguments& a, const fs::path& output, const FoundDenoiser& denoiser,
-                   const RenderScene& scene) {
-    warn_of_unusable(denoiser);
-    warn_of_config(a.display.options);
-    warn_of_idle(a, output);
-    print_warnings(scene.description.warnings);
-    print_warnings(scene.materials.warnings());
+                   const RenderScene& scene, std::set<std::string>& told) {
+    if (!a.frame || *a.frame == a.frames->first) {
+        warn_of_unusable(denoiser);
+        warn_of_config(a.display.options);
+        warn_of_idle(a, output);
+    }
+    for (const Warnings& warnings : {scene.description.warnings, scene.materials.warnings()})
+        for (const Warning& w : warnings)
+            if (told.insert(to_text(w)).second) say("warning: {}\n", to_text(w));
 }
 
-/// Renders a scene. `ranks`: the processes that share the work; may be null.
+/// Renders a scene at one moment. `ranks`: the processes that share the work; may be null.
+/// `told`: of tell_warnings.
 int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
-                 const Ranks* ranks) {
+                 const Ranks* ranks, std::set<std::string>& told) {
     const bool is_first = !ranks || ranks->index() == 0;
     if (!is_first) be_silent(a);
     if (ranks) check_shared(a);
@@ -222,10 +239,10 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     require_memory(a.max_memory, render_memory(description.film, a.options));
 
     // Build the scene
-    RenderScene& scene = kept_scene(std::move(description), a, monitor);
+    RenderScene& scene = build_scene(std::move(description), a, monitor);
     const double built = monitor.elapsed();
     progress.clear();
-    if (!a.quiet) tell_warnings(a, output, denoiser, scene);
+    if (!a.quiet) tell_warnings(a, output, denoiser, scene, told);
     require_memory(a.max_memory, render_memory(scene.description.film, a.options), &scene);
     // Tell one sample's path instead, for --debug-pixel
     if (a.debug_pixel) {
@@ -272,13 +289,28 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     return result.complete || (is_shard && !monitor.cancelled()) ? 0 : 6;
 }
 
+/// Renders the scene, or its frames in turn until one of them fails or is interrupted.
+int render_frames(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
+                  const Ranks* ranks) {
+    std::set<std::string> told;
+    if (!a.frames) return render_scene(std::move(a), invocation, threads, ranks, told);
+    Invocation of_frame{invocation.start, invocation.command_line, {}};
+    for (int frame = a.frames->first; frame <= a.frames->last; frame += a.frames->step) {
+        const int code = render_scene(at_frame(a, frame), of_frame, threads, ranks, told);
+        if (code != 0) return code;
+        kept_scene().reset();  // before the next one takes as much memory
+        of_frame.start = std::chrono::steady_clock::now();
+    }
+    return 0;
+}
+
 int run_render(RenderArguments a, const Invocation& invocation) {
     const ThreadLimit threads(a.threads);
     parse_texts(a);
     const std::unique_ptr<Ranks> ranks = join_ranks();
-    if (!ranks) return render_scene(std::move(a), invocation, threads, nullptr);
+    if (!ranks) return render_frames(std::move(a), invocation, threads, nullptr);
     try {
-        return render_scene(std::move(a), invocation, threads, ranks.get());
+        return render_frames(std::move(a), invocation, threads, ranks.get());
     } catch (...) {
         // All processes are ended at once: the others may wait for this one, which would wait for
         // them in MPI_Finalize.

@@ -1,5 +1,6 @@
 #include "cli/render_options.h"
 
+#include "cli/frames.h"
 #include "cli/options.h"
 #include "cli/override_options.h"
 
@@ -52,6 +53,15 @@ void add_scene_options(CLI::App* c, RenderArguments& a) {
          "--crop", [&a](const std::string& text) { a.overrides.crop = parse_crop("--crop", text); },
          "only these pixels, end exclusive")
         ->option_text("x0,y0,x1,y1");
+    c->add_option_function<std::string>(
+         "--frames", [&a](const std::string& text) { a.frames = parse_frames("--frames", text); },
+         "frames of an animation, each to files of its own")
+        ->option_text("A-B|A-BxN");
+    c->add_option_function<std::string>(
+         "--fps",
+         [&a](const std::string& text) { a.fps = parse_positive("--fps", text, 1e6, 1e-3); },
+         "of --frames (default 24)")
+        ->option_text("N");
     c->add_option("--search-path", a.search_paths,
                   "also look here for the scene's files; repeatable")
         ->check(CLI::ExistingDirectory.description(""))

@@ -26,8 +26,16 @@ namespace covtrace::cli {
 
 inline constexpr size_t kNoMemoryLimit = std::numeric_limits<size_t>::max();
 
+/// Frames of an animation, from the first to the last, each `step`-th.
+struct FrameRange {
+    int first = 0, last = 0, step = 1;
+};
+
 struct RenderArguments {
     std::string scene, output, png, stats;
+    std::optional<FrameRange> frames;
+    double fps = 24;           ///< frames of `frames` per second
+    std::optional<int> frame;  ///< the one of `frames` that is rendered
     std::optional<Preset> preset;
     std::optional<InstructionSet> isa;
     std::string seconds, tev;

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/frames.h"
 #include "cli/message.h"
 #include "cli/picture_name.h"
 #include "cli/same_file.h"
@@ -45,7 +46,8 @@ void require_writable(const fs::path& file) {
 
 fs::path image_path(const RenderArguments& a, SceneDescription& scene) {
     if (!a.output.empty()) return a.output;
-    const std::string otherwise = scene.name + ".exr";
+    const std::string otherwise =
+        a.frame ? frame_file(scene.name + ".exr", *a.frame) : scene.name + ".exr";
     if (scene.film.filename.empty()) return otherwise;
     fs::path name = scene.film.filename;
     const fs::path last = name.filename();

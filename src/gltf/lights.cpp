@@ -96,10 +96,11 @@ float illuminance(const LightDescription& light, const Bounds3& bounds) {
 
 }  // namespace
 
-void scale_lights(const Document& document, const Bounds3& bounds, SceneDescription& scene,
+void scale_lights(const Document& document, const Bounds3& bounds,
+                  const std::vector<LightDescription>& judged, SceneDescription& scene,
                   WarningLog& log) {
     float sum = 0;
-    for (const LightDescription& light : scene.lights) sum += illuminance(light, bounds);
+    for (const LightDescription& light : judged) sum += illuminance(light, bounds);
     if (!(sum > kPhysicalLux)) return;
     constexpr float kScale = 1 / kLumensPerWatt;
     for (LightDescription& light : scene.lights) {

@@ -16,8 +16,10 @@ void add_light(const Document& document, const PlacedNode& placed, SceneDescript
 /// them, take candela and lux for the units of the picture; exporters of renderers (Blender's)
 /// write 683 lm/W times what the renderer used. Lights that give the middle of the scene more than
 /// kPhysicalLux together are taken to be of such exporters and divided by kLumensPerWatt, with a
-/// warning; see docs/guide/gltf.md.
-void scale_lights(const Document& document, const Bounds3& bounds, SceneDescription& scene,
+/// warning; see docs/guide/gltf.md. `judged`: the lights that this is decided by, the scene's own
+/// or, of a frame of an animation, those that all of its frames are judged by.
+void scale_lights(const Document& document, const Bounds3& bounds,
+                  const std::vector<LightDescription>& judged, SceneDescription& scene,
                   WarningLog& log);
 inline constexpr float kPhysicalLux = 100;
 

@@ -189,6 +189,31 @@ class SceneAssembler {
     bool has_lamps_ = false;
 };
 
+/// Shapes and lights of a whole animation, by which each of its frames is looked at, so that
+/// nothing jumps from one to the next.
+struct Sweep {
+    Bounds3 bounds;                        ///< SceneDescription::swept
+    std::vector<LightDescription> lights;  ///< as they stand at the beginning
+};
+
+Sweep sweep(const Document& document, const Choice& choice, const std::array<float, 2>& span) {
+    constexpr int kMoments = 9;
+    constexpr float kExposure = 0.001f;  // seconds
+    Sweep swept;
+    for (int i = 0; i < kMoments; ++i) {
+        const float time = span[0] + (span[1] - span[0]) * float(i) / float(kMoments - 1);
+        const std::array<float, 2> shutter{time, time + kExposure};
+        SceneDescription moment;
+        WarningLog unheard;  // the frame itself tells what is wrong with the file
+        const PlacedNodes placed = place_nodes(document, choice, shutter, unheard);
+        SceneAssembler assembler(document, placed, choice.variant, shutter, moment, unheard);
+        assembler.add();
+        swept.bounds.extend(assembler.bounds());
+        if (i == 0) swept.lights = moment.lights;
+    }
+    return swept;
+}
+
 SceneDescription read(const Document& document, const ReadOptions& options, WarningLog& log) {
     SceneDescription scene;
     scene.name = std::filesystem::path(document.name).stem().string();
@@ -210,6 +235,13 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
                              options.shutter.value_or(std::array<float, 2>{0, 0}), scene, log);
     assembler.add();
     Bounds3 bounds = assembler.bounds();
+    if (options.is_frame && placed.animations.empty())
+        log.add(document.place("animations"), "nothing is animated: all frames are alike");
+    std::optional<Sweep> swept;
+    if (options.is_frame && !placed.animations.empty()) {
+        swept = sweep(document, choice, placed.animations.span());
+        bounds = scene.swept = swept->bounds;
+    }
     if (bounds.empty()) {
         log.add(document.place(""), "the scene has no triangles to render; nothing is to be seen");
         bounds = {Vec3{-1, -1, -1}, Vec3{1, 1, 1}};
@@ -223,7 +255,7 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
         // is to change the blur alone.
         scene.film.iso = 100 / (close - open);
     }
-    scale_lights(document, bounds, scene, log);
+    scale_lights(document, bounds, swept ? swept->lights : scene.lights, scene, log);
     if (!assembler.has_lamps())
         scene.no_lights = {document.place(""),
                            "the scene has no lights (KHR_lights_punctual, or an emissive strength "

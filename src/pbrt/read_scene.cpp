@@ -36,6 +36,9 @@ void refuse_choices(const ReadOptions& options) {
     if (!options.gltf_scene.empty())
         throw Error(ErrorKind::usage, OptionName{"gltf_scene"},
                     "pbrt files have one scene; expected a glTF file");
+    if (options.is_frame)
+        throw Error(ErrorKind::usage, OptionName{"frames"},
+                    "pbrt files are one frame each; expected a glTF file");
     if (!options.variant.empty())
         throw Error(ErrorKind::usage, OptionName{"variant"},
                     "pbrt files have no variants of materials; expected a glTF file");

@@ -75,6 +75,10 @@ class PointVisitor {
 }  // namespace
 
 void visit_points(const SceneDescription& scene, const std::function<void(Vec3)>& visit) {
+    if (!scene.swept.empty()) {
+        for (const Vec3& p : corners(scene.swept)) visit(p);
+        return;
+    }
     PointVisitor visitor(visit);
     for (const ShapeDescription& shape : scene.shapes) visitor.visit(shape, Transform());
     for (const InstanceDescription& instance : scene.instances)

@@ -243,6 +243,10 @@ struct SceneDescription {
     /// Warnings of a file that has no camera, or no light: `complete` gives them out with its
     /// defaults. Empty where the file has one, or where another one took the place.
     std::optional<Warning> no_camera, no_lights;
+    /// Bounds of the shapes at some moments of a whole animation, in world space, where the scene is
+    /// a frame of one: a camera and lights that the file lacks are placed by them, and stand still.
+    /// Else empty.
+    Bounds3 swept;
     /// Camera and environment in place of the file's, and lamps beside its own, as text for a
     /// render's identity; empty: its own, and none.
     std::string camera_override, environment_override, lamps_text;

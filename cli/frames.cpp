@@ -1,0 +1,72 @@
+#include "cli/frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "cli/values.h"
+#include "core/error.h"
+
+namespace covtrace::cli {
+
+FrameRange parse_frames(const std::string& option, const std::string& text) {
+    constexpr int kMost = 10'000'000;
+    const auto is_number = [](const std::string& part) {
+        return !part.empty() && part.size() <= 7 &&
+               std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+    };
+    const auto number = [&](const std::string& part) {
+        if (!is_number(part))
+            throw Error(ErrorKind::usage,
+                        option +
+                            ": expected a frame, or the first and the last one, and every how "
+                            "many, such as 12, 0-47 or 0-47x4, not '" +
+                            text + "'");
+        return static_cast<int>(parse_whole(option, part, 0, kMost));
+    };
+    const size_t dash = text.find('-'), cross = text.find('x');
+    FrameRange frames;
+    frames.first = frames.last = number(text.substr(0, std::min(dash, cross)));
+    if (dash != std::string::npos)
+        frames.last =
+            number(text.substr(dash + 1, cross == std::string::npos ? cross : cross - dash - 1));
+    if (cross != std::string::npos) frames.step = number(text.substr(cross + 1));
+    if (frames.last < frames.first || frames.step < 1) number("");
+    return frames;
+}
+
+std::string frame_file(const std::string& file, int frame) {
+    if (file.empty()) return file;
+    const std::filesystem::path path = file;
+    std::string name = path.filename().string();
+    const size_t last = name.find_last_of('#');
+    if (last == std::string::npos) {
+        name = fmt::format("{}.{:04}{}", path.stem().string(), frame, path.extension().string());
+    } else {
+        const size_t before = name.find_last_not_of('#', last);
+        const size_t first = before == std::string::npos ? 0 : before + 1;
+        const size_t digits = last + 1 - first;
+        name.replace(first, digits, fmt::format("{:0{}}", frame, digits));
+    }
+    return (path.parent_path() / name).string();
+}
+
+RenderArguments at_frame(const RenderArguments& a, int frame) {
+    RenderArguments one = a;
+    const double begin = frame / a.fps;
+    const std::array<float, 2> shutter =
+        a.overrides.shutter.value_or(std::array{0.0f, static_cast<float>(0.5 / a.fps)});
+    one.overrides.shutter = {static_cast<float>(shutter[0] + begin),
+                             static_cast<float>(shutter[1] + begin)};
+    one.options.seed += static_cast<uint64_t>(frame);
+    one.frame = frame;
+    one.reading.is_frame = true;
+    for (std::string* file :
+         {&one.output, &one.png, &one.stats, &one.film.film, &one.film.checkpoint})
+        *file = frame_file(*file, frame);
+    return one;
+}
+
+}  // namespace covtrace::cli
