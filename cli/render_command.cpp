@@ -236,14 +236,16 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     });
     FilmKeeping keeping = films.keeping(is_first);
     keeping.ranks = ranks;
-    require_memory(a.max_memory, render_memory(description.film, a.options));
+    require_memory(a.max_memory,
+                   render_memory(description.film, a.options, may_tell_opacity(description)));
 
     // Build the scene
     RenderScene& scene = build_scene(std::move(description), a, monitor);
     const double built = monitor.elapsed();
     progress.clear();
     if (!a.quiet) tell_warnings(a, output, denoiser, scene, told);
-    require_memory(a.max_memory, render_memory(scene.description.film, a.options), &scene);
+    require_memory(a.max_memory,
+                   render_memory(scene.description.film, a.options, scene.tells_opacity), &scene);
     // Tell one sample's path instead, for --debug-pixel
     if (a.debug_pixel) {
         const std::string text = describe_sample(scene, a.options, *a.debug_pixel);

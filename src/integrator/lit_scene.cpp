@@ -26,6 +26,16 @@ bool anything_moves(const SceneDescription& d) {
            });
 }
 
+bool holds_out(const SceneDescription& d) {
+    const auto any_of = [](const std::vector<ShapeDescription>& shapes) {
+        return std::any_of(shapes.begin(), shapes.end(),
+                           [](const ShapeDescription& s) { return s.is_holdout; });
+    };
+    return any_of(d.shapes) ||
+           std::any_of(d.objects.begin(), d.objects.end(),
+                       [&](const ObjectDescription& o) { return any_of(o.shapes); });
+}
+
 /// Radius of a sphere around the shapes that, where the camera is in a medium, holds the camera and
 /// all lights with a place, too: their rays must reach each other before the medium ends.
 float radius_of_media(const SceneDescription& d, const Bounds3& shapes) {
@@ -47,6 +57,10 @@ float radius_of_media(const SceneDescription& d, const Bounds3& shapes) {
 }
 
 }  // namespace
+
+bool may_tell_opacity(const SceneDescription& scene) {
+    return !scene.media.empty() || holds_out(scene);
+}
 
 LitScene::LitScene(SceneDescription scene_description, const std::string& isa, size_t texture_bytes)
     : description(std::move(scene_description)),
@@ -74,6 +88,8 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     has_interfaces = geometry.has_interfaces();
     shadows_differ = geometry.shadows_differ();
     kinds_differ = shadows_differ || geometry.kinds_differ() || lights.kinds_differ();
+    has_holes = holds_out(description) || !lights.has_sky_for(RayKind::camera);
+    tells_opacity = has_holes && may_tell_opacity(description);
     samples_through_panes = geometry.has_panes() && !kinds_differ;
     if (!kinds_differ) mirrors = FlatMirrors(description, geometry);
     samples_by_mirrors = !mirrors.is_empty();

@@ -17,6 +17,10 @@
 
 namespace covtrace {
 
+/// Whether opacity may be told (LitScene::tells_opacity), by what is known before the scene is
+/// built.
+bool may_tell_opacity(const SceneDescription& scene);
+
 /// A scene, built once from a description; immutable and thread-safe afterwards.
 struct LitScene {
     /// Builds the scene. `isa` is Geometry's, `texture_bytes` TextureStore's. Throws Error(scene)
@@ -47,6 +51,11 @@ struct LitScene {
     bool shadows_differ = false;  ///< Geometry::shadows_differ
     /// Whether light is sampled through panes: where there are any, and all rays meet the same.
     bool samples_through_panes = false;
+    /// Whether the camera sees nothing behind some of the scene: no sky, or holdouts.
+    bool has_holes = false;
+    /// Whether opacity is told before those holes (PathResult::opacity): where it is not just
+    /// whether the camera's rays hit something, because of media or of holdouts.
+    bool tells_opacity = false;
     FlatMirrors mirrors;  ///< none where rays of different kinds meet different shapes
     /// Whether light is sampled by those mirrors.
     bool samples_by_mirrors = false;

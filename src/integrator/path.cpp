@@ -49,8 +49,12 @@ bool PathTracer::meet(bool found) {
     // Cross the medium, which may scatter the path before it gets there
     if (medium_ >= 0) {
         const float length = found ? hit.t : scene_.unbounded_distance;
+        if (looks_straight()) clear_ *= transmittance(scene_, medium_, ray_, length);
         const MediumEvent event = cross_medium(length);
-        if (event.scatters) return scatter_in_medium(event.distance);
+        if (event.scatters) {
+            if (looks_straight()) tell_opacity_behind(found);
+            return scatter_in_medium(event.distance);
+        }
     }
     if (!found) {
         escape();
@@ -66,8 +70,13 @@ bool PathTracer::meet(bool found) {
         scene_.materials.at(shape.description.material, hit, scene_.textures);
     Bsdf bsdf = bsdf_at(hit, material.id);
     place_on_strand(bsdf, hit, shape.description.tube_sides, -ray_.direction);
+    if (shape.description.is_holdout && looks_straight() &&
+        !std::holds_alternative<InterfaceBsdf>(bsdf)) {
+        tell_clear();
+        return false;
+    }
     if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {
-        if (is_seen(*unlit)) return see_unlit(*unlit, material.id);
+        if (is_seen(*unlit, hit)) return see_unlit(*unlit, material.id);
     } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {
         return meet_surface(hit, shape, material, bsdf);
     } else if (shape.description.area_light >= 0) {
@@ -100,6 +109,7 @@ void PathTracer::weigh(float weight) {
     beta_ *= weight;
     weighed_ *= weight;
     colourless_beta_ *= weight;
+    clear_ *= weight;
 }
 
 void PathTracer::pass_emitter(const SurfaceHit& hit, const PlacedShape& shape) {
@@ -116,8 +126,8 @@ void PathTracer::pass_emitter(const SurfaceHit& hit, const PlacedShape& shape) {
     vertex->next_event.lobes.lobes[0] = {LobeKind::specular_transmission, Rgb(1)};
 }
 
-bool PathTracer::is_seen(const UnlitBsdf& unlit) const {
-    return sharp_so_far_ && (unlit.two_sided || dot(ray_.direction, hit_.ng) < 0);
+bool PathTracer::is_seen(const UnlitBsdf& unlit, const SurfaceHit& hit) const {
+    return sharp_so_far_ && (unlit.two_sided || dot(ray_.direction, hit.ng) < 0);
 }
 
 bool PathTracer::see_unlit(const UnlitBsdf& unlit, MaterialId material) {
@@ -255,6 +265,7 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
 void PathTracer::describe_first(const SurfaceHit& hit, Vec3 wo) {
     result_.geometric_normal = face_forward(hit.ng, wo);
     result_.uv = hit.uv;
+    result_.opacity = 1;
 }
 
 void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {

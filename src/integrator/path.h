@@ -13,7 +13,8 @@ namespace covtrace {
 
 /// Rays by their use. A way through several interfaces counts a ray for each piece.
 struct RayCounts {
-    uint64_t camera = 0;  ///< up to the first place that scatters
+    /// Up to the first place that scatters, and straight on behind a medium's for the opacity.
+    uint64_t camera = 0;
     uint64_t bounce = 0;  ///< rays behind that place
     uint64_t shadow = 0;  ///< towards sampled lights
     uint64_t total() const { return camera + bounce + shadow; }
@@ -45,6 +46,11 @@ struct PathResult {
     Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
     float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none
     bool hit = false;
+    /// What the camera's ray, straight on, meets of surfaces and media, where
+    /// LitScene::tells_opacity: 1 less the transmittance to where nothing is seen, in the mean of
+    /// the channels. Its mean over samples is the opacity; weights of mixtures may put one sample
+    /// below 0.
+    float opacity = 0;
     Vec3 position;          ///< of the first vertex
     Vec3 geometric_normal;  ///< of the first vertex towards the viewer; 0 in a medium
     Vec2 uv;                ///< of the first vertex; 0 in a medium

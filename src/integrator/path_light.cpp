@@ -12,6 +12,7 @@ void PathTracer::escape() {
         record_->escape_direction = ray_.direction;
         record_->escape_glow = glow_;
     }
+    if (looks_straight()) tell_opacity_of_sky();
     // Add light of the environment
     if (!scene_.lights.has_environment()) return;
     Lights::Sky sky;

@@ -31,6 +31,7 @@ class PathTracer {
           sampler_(sampler),
           max_depth_(max_depth),
           record_(record),
+          tells_opacity_(scene.tells_opacity && ray.kind == RayKind::camera),
           draws_ahead_(scene.lights.draws_ahead() && (!sky_guide || sky_guide->is_empty())),
           samples_through_panes_(scene.samples_through_panes),
           samples_by_mirrors_(scene.samples_by_mirrors) {
@@ -145,8 +146,8 @@ class PathTracer {
     void weigh(float weight);
     /// Adds what an emitter that lets light pass sends along the ray.
     void pass_emitter(const SurfaceHit& hit, const PlacedShape& shape);
-    /// Whether the path sees the colour of an unlit surface at the current hit; else it passes.
-    bool is_seen(const UnlitBsdf& unlit) const;
+    /// Whether the path sees the colour of an unlit surface at a hit; else it passes.
+    bool is_seen(const UnlitBsdf& unlit, const SurfaceHit& hit) const;
     /// Adds the colour of an unlit surface, where the path ends; returns false.
     bool see_unlit(const UnlitBsdf& unlit, MaterialId material);
     /// The frame of the surface, with the material's bump or normal map.
@@ -257,6 +258,19 @@ class PathTracer {
     /// Goes on with the chosen wavelength alone.
     void take_wavelength();
 
+    // ---- path_opacity.cpp
+    /// Whether the path is still the camera's ray, straight on, and what it meets is to be told.
+    bool looks_straight() const { return tells_opacity_ && depth_ == 0; }
+    /// Tells the opacity of a ray that gets to where nothing is seen.
+    void tell_clear();
+    /// Tells the opacity of a ray that leaves the scene.
+    void tell_opacity_of_sky();
+    /// Tells the opacity of a ray that a medium scatters before the current hit, or the sky.
+    void tell_opacity_behind(bool found);
+    /// The factor on light that comes straight through the surface at a hit to the camera; 0 where
+    /// none does.
+    float passed_to_camera(const PlacedShape& shape, const SurfaceHit& hit) const;
+
     // ---- path_medium.cpp
     /// Adds the emission of the medium on the way and decides whether the ray gets through.
     MediumEvent cross_medium(float length);
@@ -306,6 +320,8 @@ class PathTracer {
     float mirror_share_ = 0;  // probability of sampling light by a mirror at the current vertex
     // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
+    Rgb clear_{1};  // transmittance of the camera's ray so far
+    const bool tells_opacity_;
     const bool draws_ahead_;  // not where most samples follow the guide to the sky
     const bool samples_through_panes_, samples_by_mirrors_;
     LitPlace lit_;    // the last vertex

@@ -193,6 +193,7 @@ void SceneBuilder::shape(Entity entity) {
     s.where = entity.where;
     s.directive = directive_;
     s.visible_to = visible_to(entity);
+    s.is_holdout = entity.parameters.flag("holdout", false);
     s.area_light = state_.area_light;
     if (s.area_light >= 0) {
         used_area_lights_.insert(s.area_light);

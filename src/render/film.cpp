@@ -38,6 +38,7 @@ void Film::add(size_t i, const FilmSample& s) {
         in_view[i] +=
             (s.in_view - in_view[i]) * (weight_in(s, p.count) / static_cast<float>(p.count));
     if (!rays.empty()) rays[i] += s.rays;
+    if (!opacity.empty()) opacity[i] += (s.opacity - opacity[i]) / static_cast<float>(p.count);
     if (!surfaces.empty() && s.hit)
         surfaces[i].approach(s.surface, 1 / (p.coverage * static_cast<float>(p.count)));
     if (features.empty()) return;

@@ -22,6 +22,7 @@ struct FilmSample {
     Vec3 normal;
     float depth = 0;
     bool hit = false;
+    float opacity = 0;  ///< PathResult::opacity, where FilmParts::opacity asks for it
     PathFeatures features;
     FirstSurface surface;  ///< where FilmParts::surfaces asks for it
 };
@@ -59,6 +60,7 @@ struct FilmParts {
     bool in_view = false;   ///< the light of emitters in view
     bool features = false;  ///< means and deviations of the features, and the rays
     bool surfaces = false;  ///< the first surfaces
+    bool opacity = false;   ///< the opacity, where it is not FilmPixel::coverage
     bool operator==(const FilmParts&) const = default;
 };
 
@@ -72,6 +74,7 @@ struct Film {
             rays.resize(pixels.size());
         }
         if (parts.surfaces) surfaces.resize(pixels.size());
+        if (parts.opacity) opacity.resize(pixels.size());
     }
     PixelBounds bounds;
     std::vector<FilmPixel> pixels;
@@ -82,6 +85,7 @@ struct Film {
     std::vector<FeatureSquares> feature_squares;
     std::vector<uint32_t> rays;          ///< rays of all samples of a pixel
     std::vector<FirstSurface> surfaces;  ///< means over the samples that hit something
+    std::vector<float> opacity;          ///< mean of FilmSample::opacity
 
     /// Index of the pixel (x, y), in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1), in `pixels`.
     size_t index(int x, int y) const {
@@ -94,7 +98,7 @@ struct Film {
         return pixels.size() * sizeof(FilmPixel) + in_view.size() * sizeof(Rgb) +
                features.size() * sizeof(PathFeatures) +
                feature_squares.size() * sizeof(FeatureSquares) + rays.size() * sizeof(uint32_t) +
-               surfaces.size() * sizeof(FirstSurface);
+               surfaces.size() * sizeof(FirstSurface) + opacity.size() * sizeof(float);
     }
 };
 

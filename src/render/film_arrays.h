@@ -33,6 +33,7 @@ inline std::vector<FilmArray> film_arrays(RenderState& state) {
         add(film + ".feature_squares", state.films[k].feature_squares);
         add(film + ".rays", state.films[k].rays);
         add(film + ".surfaces", state.films[k].surfaces);
+        add(film + ".opacity", state.films[k].opacity);
         if (state.in_round()) add(film + ".plan", state.plan[k]);
     }
     if (auto* parts = std::get_if<CovarianceBuffers>(&state.covariances)) {

@@ -92,6 +92,7 @@ void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
         kept.features = has("film0.features");
     }
     kept.surfaces = has("film0.surfaces");
+    kept.opacity = has("film0.opacity");
     for (size_t k = 0; k < (s.method == Method::hybrid ? 2 : 1); ++k) {
         s.films.emplace_back(s.region, kept);
         if (format == 3) s.films.back().features = {};

@@ -26,6 +26,7 @@ Film merged(std::span<const Film> half) {
     Film film(half[0].bounds);
     if (!half[0].features.empty()) film.features.resize(film.pixels.size());
     if (!half[0].surfaces.empty()) film.surfaces.resize(film.pixels.size());
+    if (!half[0].opacity.empty()) film.opacity.resize(film.pixels.size());
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const FilmPixel &a = half[0].pixels[i], &b = half[1].pixels[i];
         FilmPixel& p = film.pixels[i];
@@ -34,6 +35,7 @@ Film merged(std::span<const Film> half) {
             const Film& whole = half[a.count == 0 ? 1 : 0];
             if (!film.features.empty()) film.features[i] = whole.features[i];
             if (!film.surfaces.empty()) film.surfaces[i] = whole.surfaces[i];
+            if (!film.opacity.empty()) film.opacity[i] = whole.opacity[i];
             continue;
         }
         p.count = a.count + b.count;
@@ -44,6 +46,8 @@ Film merged(std::span<const Film> half) {
         p.albedo = 0.5f * (a.albedo + b.albedo);
         p.normal = 0.5f * (a.normal + b.normal);
         p.coverage = 0.5f * (a.coverage + b.coverage);
+        if (!film.opacity.empty())
+            film.opacity[i] = 0.5f * (half[0].opacity[i] + half[1].opacity[i]);
         const float hit = a.coverage + b.coverage;
         const auto of_hits = [&](auto of_a, auto of_b) {
             return hit > 0 ? (a.coverage * of_a + b.coverage * of_b) / hit : decltype(of_a){};

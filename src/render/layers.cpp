@@ -1,5 +1,6 @@
 #include "render/layers.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -81,8 +82,10 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
         return array(covariance ? covariance->gathered.color[i] : pixels[i].mean);
     });
     if (has_holes)
-        add_layer(image, "", std::array{"A"},
-                  [&](size_t i) { return std::array{pixels[i].coverage}; });
+        add_layer(image, "", std::array{"A"}, [&](size_t i) {
+            return std::array{film.opacity.empty() ? pixels[i].coverage
+                                                   : std::clamp(film.opacity[i], 0.0f, 1.0f)};
+        });
     add_layer(image, "raw.", kRgb, [&](size_t i) { return array(pixels[i].mean); });
     if (!film.in_view.empty())
         add_layer(image, "inview.", kRgb, [&](size_t i) { return array(film.in_view[i]); });

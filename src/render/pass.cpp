@@ -89,6 +89,7 @@ void add_sample(const PassContext& context, Film& film, size_t pixel, int x, int
         if (!is_finite(*albedo)) *albedo = Rgb(0);
     for (Vec3* normal : {&s.normal, &s.features.normal})
         if (!is_finite(*normal)) *normal = {};
+    if (!std::isfinite(s.opacity)) s.opacity = 0;
     if (!std::isfinite(s.depth) || !std::isfinite(s.features.depth)) s.hit = false;
     film.add(pixel, s);
 }
@@ -139,6 +140,7 @@ FilmSample film_sample(const PassContext& context, const CameraPath& start,
     s.normal = path.normal;
     s.depth = path.depth;
     s.hit = path.hit;
+    s.opacity = path.opacity;
     s.features = path.features;
     if (context.surfaces != FilmDescription::Surfaces::none)
         s.surface = first_surface(

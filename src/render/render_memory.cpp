@@ -53,25 +53,27 @@ size_t film_bytes_per_pixel(Method method, FilmParts parts) {
                      kCovariance = sizeof(PackedCovariance),
                      kFeatureRecords =
                          sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
-    const size_t surfaces = parts.surfaces ? sizeof(FirstSurface) : 0;
+    const size_t further =
+        (parts.surfaces ? sizeof(FirstSurface) : 0) + (parts.opacity ? sizeof(float) : 0);
     switch (method) {
         case Method::uniform:
             return sizeof(FilmPixel) + (parts.in_view ? sizeof(Rgb) : 0) +
-                   (parts.features ? kFeatureRecords : 0) + surfaces + kPlan;
+                   (parts.features ? kFeatureRecords : 0) + further + kPlan;
         case Method::covariance:
-            return sizeof(FilmPixel) + sizeof(Rgb) + surfaces + kPlan + kDensity + 2 * kCovariance;
+            return sizeof(FilmPixel) + sizeof(Rgb) + further + kPlan + kDensity + 2 * kCovariance;
         case Method::hybrid:
             break;
     }
-    const size_t half = sizeof(FilmPixel) + kFeatureRecords + surfaces + kPlan;
+    const size_t half = sizeof(FilmPixel) + kFeatureRecords + further + kPlan;
     // Both parts of the light are kept up to the end of the pilot; then their sum, and densities.
     return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
 }
 
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
-                                            const RenderOptions& options) {
+                                            const RenderOptions& options, bool keeps_opacity) {
     const FilmParts parts{options.emitters_apart, options.features,
-                          kept_surfaces(film, options) != FilmDescription::Surfaces::none};
+                          kept_surfaces(film, options) != FilmDescription::Surfaces::none,
+                          keeps_opacity};
     const size_t kept = film_bytes_per_pixel(options.method, parts),
                  layers = image_bytes(options.method) + further_layers_bytes(options.method, parts);
     const PixelBounds region = render_region(film);

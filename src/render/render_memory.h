@@ -18,7 +18,8 @@ size_t film_bytes_per_pixel(Method method, FilmParts parts = {});
 
 /// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the
 /// layers and the buffers of the reconstruction, as measured; "denoiser" where there is one.
+/// `keeps_opacity`: FilmParts::opacity.
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
-                                            const RenderOptions& options);
+                                            const RenderOptions& options, bool keeps_opacity);
 
 }  // namespace covtrace

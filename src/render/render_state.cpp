@@ -76,7 +76,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
       filter(options.filter),
       region(render_region(scene.description.film)),
       display{0, 0, scene.description.film.width, scene.description.film.height},
-      has_holes(!scene.lights.has_sky_for(RayKind::camera)),
+      has_holes(scene.has_holes),
       metadata(scene_metadata(scene, options)),
       stage(method == Method::uniform ? Stage::rounds : Stage::first_paths),
       spp(target_spp(scene.description, options)) {
@@ -85,6 +85,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
     if (method == Method::uniform) kept = {options.emitters_apart, options.features};
     kept.surfaces =
         kept_surfaces(scene.description.film, options) != FilmDescription::Surfaces::none;
+    kept.opacity = scene.tells_opacity;
     for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
     if (method != Method::uniform) covariances = CovarianceBuffers(region.width(), region.height());
 }
@@ -140,6 +141,7 @@ void RenderState::keep_only(const Shard& shard) {
             clear_at(film.feature_squares, i);
             clear_at(film.rays, i);
             clear_at(film.surfaces, i);
+            clear_at(film.opacity, i);
         }
         for (auto& counts : plan) clear_at(counts, i);
         if (auto* parts = std::get_if<CovarianceBuffers>(&covariances)) {

@@ -44,7 +44,7 @@ struct RenderState {
     FilterRule filter = FilterRule::verified;
     PixelBounds region;      ///< the pixels to render
     PixelBounds display;     ///< the full frame
-    bool has_holes = false;  ///< whether the camera sees nothing behind the scene
+    bool has_holes = false;  ///< LitScene::has_holes
     Metadata metadata;       ///< metadata of the image: version, scene, camera
 
     Stage stage = Stage::rounds;

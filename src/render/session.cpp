@@ -40,7 +40,8 @@ RenderResult render(const RenderScene& scene, const RenderOptions& options, Moni
     // Images that need more memory than there is are refused: a system that promises more than it
     // has would end the process in the middle of the render.
     double needed = 0;
-    for (const auto& [name, bytes] : render_memory(scene.description.film, options))
+    for (const auto& [name, bytes] :
+         render_memory(scene.description.film, options, scene.tells_opacity))
         needed += double(bytes);
     if (needed > double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE))) throw too_large;
     try {

@@ -134,6 +134,9 @@ struct ShapeDescription {
     std::optional<Displacement> displacement = {};  ///< of triangles with normals and uvs only
     /// Rays that the shape is there for; always `any`, and every one for interfaces.
     RayKinds visible_to = kEveryRay;
+    /// Whether the camera's rays, straight on, end there as where there is nothing: the picture is
+    /// black and clear. All other rays meet the shape as it is.
+    bool is_holdout = false;
     /// Whether rays by which the camera sees, straight, in perfect mirrors and through clear glass,
     /// meet the shape's inside, too; else they pass it. All others meet both sides.
     bool is_seen_from_back = true;
