@@ -47,7 +47,7 @@ bool PathTracer::meet(bool found) {
     if (body_) return cross_body(found);
     const SurfaceHit& hit = hit_;
     // Cross the medium, which may scatter the path before it gets there
-    if (medium_ >= 0) {
+    if (is_in_medium()) {
         const float length = found ? hit.t : scene_.unbounded_distance;
         if (looks_straight()) clear_ *= transmittance(scene_, medium_, ray_, length);
         const MediumEvent event = cross_medium(length);

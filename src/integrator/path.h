@@ -46,10 +46,9 @@ struct PathResult {
     Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
     float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none
     bool hit = false;
-    /// What the camera's ray, straight on, meets of surfaces and media, where
-    /// LitScene::tells_opacity: 1 less the transmittance to where nothing is seen, in the mean of
-    /// the channels. Its mean over samples is the opacity; weights of mixtures may put one sample
-    /// below 0.
+    /// Opacity of what the camera's ray meets straight on, where LitScene::tells_opacity: 1 less
+    /// the transmittance to where nothing is seen, in the mean of the channels. Its mean over
+    /// samples is the opacity; weights of mixtures may put one sample below 0.
     float opacity = 0;
     Vec3 position;          ///< of the first vertex
     Vec3 geometric_normal;  ///< of the first vertex towards the viewer; 0 in a medium

@@ -44,7 +44,8 @@ void PathTracer::tell_opacity_behind(bool found) {
         ray.origin = Geometry::offset_origin(hit, ray.direction);
         ++result_.rays.camera;
         found = scene_.geometry.intersect(ray, hit);
-        clear_ *= transmittance(scene_, medium, ray, found ? hit.t : kInfinity);
+        if (medium >= 0 && finds(medium))
+            clear_ *= transmittance(scene_, medium, ray, found ? hit.t : kInfinity);
     }
     if (found)
         result_.opacity = 1;  // caught between interfaces

@@ -272,6 +272,12 @@ class PathTracer {
     float passed_to_camera(const PlacedShape& shape, const SurfaceHit& hit) const;
 
     // ---- path_medium.cpp
+    /// Whether the path is in a medium that its next ray finds.
+    bool is_in_medium() const { return medium_ >= 0 && finds(medium_); }
+    bool finds(MediumId medium) const {
+        return scene_.media[static_cast<size_t>(medium)].is_seen || depth_ > 0 ||
+               ray_.kind != RayKind::camera;
+    }
     /// Adds the emission of the medium on the way and decides whether the ray gets through.
     MediumEvent cross_medium(float length);
     /// A light beside the next `length` of the ray, chosen by `u`, which can be used again.

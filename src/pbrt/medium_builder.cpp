@@ -330,6 +330,7 @@ MediumDescription build_medium(std::string name, Entity& e, const CurrentTransfo
     if (type.empty())
         throw Error(ErrorKind::scene, e.where, label + " has no type; expected \"string type\"");
     medium.g = mean_cosine(e);
+    medium.is_seen = !e.parameters.flag("hiddenfromcamera", false);
     if (type == "homogeneous") {
         homogeneous(medium, e, context);
     } else if (type == "uniformgrid") {

@@ -44,6 +44,8 @@ struct MediumDescription {
     std::shared_ptr<const Glow> glow = {};
     /// Emission beside these that does not hang on the density, in world space. May be null.
     std::shared_ptr<const EmissionField> source = {};
+    /// Whether the camera's rays, straight on, find the medium; else they pass as where it is not.
+    bool is_seen = true;
 };
 
 // ---- shapes, in object space

@@ -19,6 +19,7 @@ struct Medium {
     const DensityGrid* density = nullptr;
     const Glow* glow = nullptr;             ///< emission that varies, in the place of `emission`
     const EmissionField* source = nullptr;  ///< emission beside these, whatever the density
+    bool is_seen = true;                    ///< MediumDescription::is_seen
 
     Rgb extinction() const { return absorption + scattering; }
     /// Share of the extinction that scatters; 0 where there is none.
