@@ -150,7 +150,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
             image = os.path.join(own_folder, "image.exr")
             code = self._run(self._command(program, file, image, scene.covtrace, layer, scene.covtrace.seconds * self._share))
             if os.path.exists(image):
-                found[picture] = self._with_alpha(layers.read(image), scene.render.film_transparent, picture)
+                found[picture] = self._with_alpha(layers.read(image))
             if code != 0:
                 break
         # A cancelled render shows what there is.
@@ -184,10 +184,9 @@ class CovtraceEngine(bpy.types.RenderEngine):
         return command
 
     @staticmethod
-    def _with_alpha(channels, is_transparent, picture):
-        """Pictures have alpha where nothing is seen behind what they show; where the film is not transparent it is not wanted."""
-        wanted = is_transparent or picture in (shadow_catchers.MATTE, shadow_catchers.CAUGHT, shadow_catchers.BARE)
-        if not wanted or "ViewLayer.Combined.A" not in channels:
+    def _with_alpha(channels):
+        """Pictures have alpha where nothing is seen behind what they show."""
+        if "ViewLayer.Combined.A" not in channels:
             channels["ViewLayer.Combined.A"] = np.ones_like(channels["ViewLayer.Combined.R"])
         return channels
 

@@ -31,9 +31,10 @@ class Variant:
     """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, the
     names of the UV maps that it reads ("" is the mesh's), and the name of the medium that fills what it is on, or "". body:
     the Body whose atlas stands for the UV map, or None. is_light_alone, is_volume_alone: whether it is no surface but
-    for its light, or its medium. tangent: the Tangent that it wants of its mesh, or None."""
+    for its light, or its medium. is_holdout: whether the camera sees a hole there. tangent: the Tangent that it wants of its mesh, or
+    None."""
 
-    body, is_light_alone, is_volume_alone = None, False, False
+    body, is_light_alone, is_volume_alone, is_holdout = None, False, False, False
 
     def __init__(self, rays, name, emission=None, alpha="", uv_maps=(), medium="", tangent=None):
         self.rays, self.name, self.emission, self.alpha, self.uv_maps = rays, name, emission, alpha, uv_maps
@@ -86,18 +87,21 @@ class MaterialExporter(SumExporter):
             exported = self._variants(material)
         finally:
             self.out, written, self.warn = out, self.out, warn
+        if self.own_holdouts - {variant.name for variant in exported}:
+            told.append(f"material '{self.name}': Holdout is not supported in a mixture with others; black takes its place")
         out.write(written.getvalue())
         for text in told:
             warn(text)
         for variant in exported:
             variant.body, is_alone = self.surface.body, variant.name in self.interfaces
+            variant.is_holdout = variant.name in self.own_holdouts
             variant.is_light_alone, variant.is_volume_alone = is_alone and not variant.medium, is_alone and bool(variant.medium)
         return exported
 
     # -- shaders
 
     def _variants(self, material):
-        self.name = material.name if material else "none"
+        self.name, self.own_holdouts = material.name if material else "none", set()
         if material is WITHOUT_MATERIAL:
             return [Variant(RAYS, self._interface(), medium=self._medium(None))]
         if material is None or not material.use_nodes or not material.node_tree:
@@ -249,8 +253,9 @@ class MaterialExporter(SumExporter):
         return self._metal(self._value(node.inputs["Color"]), self._value(node.inputs["Size"], True), None, self._normal_map(node))
 
     def _holdout(self, node):
-        self.warn(f"material '{self.name}': shader '{node.name}' is not supported; black takes its place")
-        return self._black()
+        name = self._black()
+        self.own_holdouts.add(name)
+        return name
 
     def _rough(self, node):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)

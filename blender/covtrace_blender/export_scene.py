@@ -23,7 +23,7 @@ from .owner import Owner, asks_for_random, random_of
 from .part import Part, write_parts
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
-from .shadow_catchers import BEHIND
+from .shadow_catchers import BARE, BEHIND, CAUGHT
 from .solid import Box, Solid
 from .texel_density import Placements
 from .uv_ranges import UvRanges
@@ -83,6 +83,7 @@ class SceneExporter(Instances):
         self.out = out
         out.write('WorldBegin\nMediumInterface "" ""\n')
         self.materials, self.atlases, self.bodies = MaterialExporter(out, self.folder, self.warn), Atlases(), {}
+        self.materials.media.is_seen = self.picture not in (CAUGHT, BARE)  # what media hide is opacity of the matte
         self.random_materials, self.random = {}, None
         self.lamp_images = PhotometricImages(self.folder, self.materials.files.source)
         self._write_world()
@@ -106,7 +107,7 @@ class SceneExporter(Instances):
             self.everywhere = (self.materials.media.add(found),)
             self.out.write(border(found, *self.everywhere, self.corners()))
         export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time, self.is_preview, self.reach,
-                                 self.is_preview or self._is_sky_seen())
+                                 self._is_sky_seen())
 
     def _is_sky_seen(self):
         return self.picture == BEHIND or self.picture is None and not self.scene.render.film_transparent
@@ -136,8 +137,6 @@ class SceneExporter(Instances):
                 if self._add_volume(found, instance, self._variants(obj, slot, mesh), hidden, lambda: Solid(mesh)):
                     break
             obj.to_mesh_clear()
-        if found and not self.is_preview and (self.scene.render.film_transparent or self.picture):
-            self.warn("volumes before a transparent film or shadow catchers have less opacity than in Cycles")
         return found
 
     def _add_volume(self, found, instance, variants, hidden, make_solid):
@@ -184,20 +183,20 @@ class SceneExporter(Instances):
                 if not parts:
                     continue
                 around = self.volumes.around(obj, matrix, self.warn) if any(part.variant.medium for part in parts) else ()
-                media = self.materials.media
+                media, is_holdout = self.materials.media, self.visibility.is_holdout(instance)
                 stands_alone = any(part.variant.emission or media.varies(part.variant.medium) for part in parts)
                 if instance.is_instance and not stands_alone:
-                    shown += (frozenset(hidden), around)
+                    shown += (frozenset(hidden), is_holdout, around)
                     if shown not in shared:
                         shared[shown] = f"object {len(shared)}"
                         self.out.write(f'ObjectBegin "{shared[shown]}"\n')
-                        write_parts(self.out, media, parts, hidden, around, matrix)
+                        write_parts(self.out, media, parts, hidden, is_holdout, around, matrix)
                         self.out.write("ObjectEnd\n")
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
                                    f'ObjectInstance "{shared[shown]}"\nAttributeEnd\n')
                 else:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
-                    write_parts(self.out, media, parts, hidden, around, matrix)
+                    write_parts(self.out, media, parts, hidden, is_holdout, around, matrix)
                     self.out.write("AttributeEnd\n")
             elif obj.type in ("GPENCIL", "GREASEPENCIL"):
                 self.warn(f"object '{obj.name}' is grease pencil, which is not rendered")

@@ -27,7 +27,7 @@ def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1
     warn(text): what is left out; tell(text): what is done; time: in frames; is_preview: bakes are coarse; reach: how much of each channel
     comes to the scene; is_seen: whether the camera sees it.
     """
-    is_dark = True
+    found = set()  # kinds of rays that find light
     for rays in _groups(world, is_seen) if any(reach) else []:
         light = _light(world, warn, tell, time, is_preview, rays[0])
         if isinstance(light, tuple):
@@ -37,9 +37,11 @@ def write_world(out, world, folder, warn, tell, time, is_preview=False, reach=(1
         if light is not None:
             hidden = hidden_from(() if len(rays) == len(_SKY_RAYS) else set(RAYS) - set(rays))
             _write_light(out, light, os.path.join(folder, f"world {rays[0]}.pfm"), hidden)
-            is_dark = False
-    if is_dark:
+            found.update(rays)
+    if not found:
         _write_light(out, (0, 0, 0), "", hidden_from(() if is_seen else ("camera",)))
+    elif is_seen and "camera" not in found:
+        _write_light(out, (0, 0, 0), "", hidden_from(set(RAYS) - {"camera"}))  # black, which is not clear
 
 
 # Kinds of rays that find a sky.

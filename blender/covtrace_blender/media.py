@@ -28,8 +28,8 @@ class VaryingMedium:
             other = other.found.of_values(other.lattice.interpolated(places, lambda numbers: other.found.values()[numbers]))
         return VaryingMedium(self.found.plus(other), self.lattice, self.matrix)
 
-    def text(self, name):
-        """pbrt's grid: of one colour, as dense at each place as all channels are, and of any emission."""
+    def text(self, name, more=""):
+        """pbrt's grid, with `more` parameters: of one colour, as dense at each place as all channels are, and of any emission."""
         density = (self.found.scattering + self.found.absorption).sum(-1)
         whole = density.sum(dtype=float) or 1.0
         scattering, absorption = (part.sum(0, dtype=float) / whole for part in (self.found.scattering, self.found.absorption))
@@ -41,7 +41,7 @@ class VaryingMedium:
         return (f'AttributeBegin\nTransform [{matrix_text(self.matrix)}]\nMakeNamedMedium "{name}" "string type" "uniformgrid" '
                 f'"integer nx" {nx} "integer ny" {ny} "integer nz" {nz} "point3 p0" [{low}] "point3 p1" [{high}] '
                 f'"rgb sigma_s" [{_short(scattering)}] "rgb sigma_a" [{_short(absorption)}] "float g" {g:.9g}{light} '
-                f'"float density" [{_short(density)}]\nAttributeEnd\n')
+                f'"float density" [{_short(density)}]{more}\nAttributeEnd\n')
 
 
 def _short(values):
@@ -50,7 +50,9 @@ def _short(values):
 
 
 class Media:
-    """Writes media into `out`, each once."""
+    """Writes media into `out`, each once. is_seen: whether the camera's rays, straight on, find them."""
+
+    is_seen = True
 
     def __init__(self, out):
         self.out, self._found, self._sums, self._placed, self._written = out, {}, {}, {}, set()
@@ -93,7 +95,9 @@ class Media:
             return
         self._written.add(name)
         found = self._found[name]
-        self.out.write(found.text(name) if self.varies(name) else f'MakeNamedMedium "{name}" "string type" "homogeneous" {found.text()}\n')
+        hidden = "" if self.is_seen else ' "bool hiddenfromcamera" true'
+        self.out.write(found.text(name, hidden) if self.varies(name)
+                       else f'MakeNamedMedium "{name}" "string type" "homogeneous" {found.text()}{hidden}\n')
 
 
 class Volumes:

@@ -13,24 +13,26 @@ class Part:
     def __init__(self, file, variant, motion, tube_sides):
         self.file, self.variant, self.motion, self.tube_sides = file, variant, motion, tube_sides
 
-    def text(self, hidden):
-        """pbrt's light and shape of it. hidden: the kinds of rays that do not see it."""
+    def text(self, hidden, is_holdout):
+        """pbrt's light and shape of it. hidden: the kinds of rays that do not see it; is_holdout: whether all of its object is one."""
         emission, light = self.variant.emission, ""
         if emission:
             image = f' "string filename" "{emission.texture}"' if emission.texture else ""
             scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else f'"rgb L" [{numbers(emission.radiance)}]'
             passes = ' "bool letslightpass" true' if self.variant.is_light_alone else ""
             light = f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true{passes}\n'
-        unseen = hidden | (set(RAYS) - set(self.variant.rays))
+        # Media end at their border for every ray.
+        unseen = set() if self.variant.is_volume_alone else hidden | (set(RAYS) - set(self.variant.rays))
         tubes = f' "integer tubesides" {self.tube_sides}' if self.tube_sides else ""
-        return light + self.shapes(f"{self.variant.alpha}{hidden_from(unseen)}{tubes}")
+        hole = ' "bool holdout" true' if is_holdout or self.variant.is_holdout else ""
+        return light + self.shapes(f"{self.variant.alpha}{hidden_from(unseen)}{tubes}{hole}")
 
     def shapes(self, parameters):
         """pbrt's shapes, with parameters that all of them have."""
         return f'Shape "plymesh" "string filename" "{self.file}" {parameters}\n'
 
 
-def write_parts(out, media, parts, hidden, around, matrix):
+def write_parts(out, media, parts, hidden, is_holdout, around, matrix):
     """Writes Parts in their object's space. media: a Media; around: names of those that the object stands in; matrix: its own, to the
     world."""
     for part in parts:
@@ -40,4 +42,4 @@ def write_parts(out, media, parts, hidden, around, matrix):
             out.write(f'MediumInterface "{inner}" "{media.sum(around)}"\n')
         if part.motion is not None:
             out.write(placement("ConcatTransform", *part.motion))
-        out.write(f"{part.text(hidden)}AttributeEnd\n")
+        out.write(f"{part.text(hidden, is_holdout)}AttributeEnd\n")

@@ -6,6 +6,8 @@ import threading
 import time
 import weakref
 
+import numpy as np
+
 from . import layers
 from .tev_receiver import TevReceiver
 
@@ -34,7 +36,7 @@ class PreviewSession:
     """Renders the view that was asked for last. A coarse image is always finished, so that something is seen while views
     change faster than images come; a fine one ends where there is a newer view.
 
-    `image`: (height, width, 3) float32, rows from the bottom, None before the first; `version` counts them; `failure`: the
+    `image`: (height, width, 4) float32, rows from the bottom, None before the first; `version` counts them; `failure`: the
     program's last message where it failed; `is_busy`: whether there is more to come.
     """
 
@@ -131,7 +133,9 @@ class PreviewSession:
                 self._set(self.image)
             return False
         self.failure = ""
-        self._set(layers.pixels(layers.read(image), "RGB"))
+        channels = layers.read(image)
+        channels.setdefault("A", np.ones_like(channels["R"]))
+        self._set(layers.pixels(channels, "RGBA"))
         return True
 
     def _set(self, image):

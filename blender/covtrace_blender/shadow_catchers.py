@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .shader_nodes.light_path import RAYS
+
 # The pictures: all but the catchers, which light it; the catchers with all other things there, which the camera does not see; the catchers
 # alone; and where the film is not transparent what is behind.
 MATTE, CAUGHT, BARE, BEHIND = "matte", "caught", "bare", "behind"
@@ -21,9 +23,14 @@ def pictures(depsgraph):
     return (MATTE, CAUGHT, BARE) if depsgraph.scene.render.film_transparent else (MATTE, CAUGHT, BARE, BEHIND)
 
 
-def hidden_in(picture, instance, hidden):
-    """The kinds of rays that an instance is hidden from in a picture, which without it are `hidden`; None where it is not there."""
+def hidden_in(picture, instance, hidden, is_holdout=False):
+    """The kinds of rays that an instance is hidden from in a picture, which without it are `hidden`; None where it is not there. Holdouts
+    hide what is behind them from the camera in all pictures."""
     if picture is None or instance.object.type == "LIGHT" and picture != BEHIND:
+        return hidden
+    if is_holdout and picture in (BARE, BEHIND):
+        return hidden | set(RAYS) - {"camera"}
+    if is_holdout and picture == CAUGHT:
         return hidden
     catches = is_catcher(instance)
     if picture == BEHIND or picture == BARE and not catches:
@@ -32,7 +39,7 @@ def hidden_in(picture, instance, hidden):
 
 
 def composed(found):
-    """(h, w, 4) of {picture: (h, w, 4)}, of which those but for BEHIND have alpha and nothing behind them. As in Cycles: what is taken of the
+    """(h, w, 4) of {picture: (h, w, 4)}, of which BEHIND alone shows the sky. As in Cycles: what is taken of the
     catchers' light, in the mean of its channels, is opacity, and black. The MATTE alone is itself, where others are missing."""
     if CAUGHT not in found or BARE not in found:
         return found[MATTE]

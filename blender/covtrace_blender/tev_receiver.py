@@ -39,7 +39,7 @@ class TevReceiver:
                 end.close()
 
     def receive(self, seconds):
-        """Waits for `seconds` at most; (height, width, 3) float32, rows from the bottom, or None."""
+        """Waits for `seconds` at most; (height, width, 4) float32, rows from the bottom, or None."""
         try:
             if self._connection is None:
                 self._listener.settimeout(seconds)
@@ -62,14 +62,16 @@ class TevReceiver:
         (kind, _), _ = message.take("BB"), message.text()
         if kind == CREATE:
             width, height, _ = message.take("3i")
-            self._image = np.zeros((height, width, 3), np.float32)
+            self._image = np.ones((height, width, 4), np.float32)
         elif kind == UPDATE and self._image is not None:
             (count,) = message.take("i")
             channels = [message.text() for _ in range(count)]
             x, y, width, height = message.take("4i")
             offsets, strides = message.take(f"{count}q"), message.take(f"{count}q")
             values = np.frombuffer(message.data, "<f4", offset=message.at)
-            for i, letter in enumerate("RGB"):
+            for i, letter in enumerate("RGBA"):
+                if letter not in channels:
+                    continue  # opaque
                 at = channels.index(letter)
                 plane = values[offsets[at]:][:strides[at] * width * height:strides[at]]
                 self._image[y:y + height, x:x + width, i] = plane.reshape(height, width)

@@ -5,7 +5,6 @@ import weakref
 
 import bpy
 import gpu
-import numpy as np
 from gpu_extras.presets import draw_texture_2d
 
 from . import settings
@@ -110,7 +109,5 @@ class Viewport:
 
 def _texture(image):
     height, width, _ = image.shape
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., :3] = image
-    buffer = gpu.types.Buffer("FLOAT", rgba.size, rgba.ravel())
+    buffer = gpu.types.Buffer("FLOAT", image.size, image.ravel())
     return gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)

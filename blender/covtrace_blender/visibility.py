@@ -1,5 +1,6 @@
 """Which rays see an object, and what of that covtrace does not have."""
 
+from .holdouts import is_holdout, of_layer
 from .shader_nodes.light_path import RAYS
 from .shadow_catchers import hidden_in, is_catcher
 
@@ -29,17 +30,18 @@ class Visibility:
         hidden = self._hidden_of(instance)
         if "camera" not in hidden and self._clipping.hides(instance):
             hidden.add("camera")
-        hidden = hidden_in(self._picture, instance, hidden)
+        hidden = hidden_in(self._picture, instance, hidden, self.is_holdout(instance))
         if hidden is None or not set(RAYS) - hidden:
             return None
         self._note_linking(obj)
         if obj.type == "LIGHT":
             return hidden if self._is_lamp_lit(obj, hidden) else None
-        if self._is_holdout(obj):
-            self._note("rendered although they are holdouts", obj)
         if self._picture is None and is_catcher(instance):
             self._note("rendered as surfaces although they catch shadows", obj)
         return hidden
+
+    def is_holdout(self, instance):
+        return instance.object.type not in ("LIGHT", "VOLUME") and is_holdout(instance, self.view_layer)
 
     def note_volume(self, instance, variants):
         """Notes an instance that is hidden from some kinds of rays where these Variants are its volume alone: media end there for all rays."""
@@ -51,7 +53,7 @@ class Visibility:
 
     def _hidden(self, obj):
         hidden = {ray for ray in RAYS if not getattr(obj, _PROPERTIES[ray])}
-        return hidden | ({"camera"} if self._of_layer(obj, "indirect_only_get") else set())
+        return hidden | ({"camera"} if of_layer(obj, "indirect_only_get", self.view_layer) else set())
 
     def _is_lamp_lit(self, obj, hidden):
         of_cycles = getattr(obj.data, "cycles", None)  # None where Cycles is not enabled
@@ -74,16 +76,6 @@ class Visibility:
             self._note("lighting all objects and not those alone that they are linked to", obj)
         if linking and linking.blocker_collection:
             self._note("shadowed by all objects and not by those alone that they are linked to", obj)
-
-    def _is_holdout(self, obj):
-        return obj.is_holdout or self._of_layer(obj, "holdout_get")
-
-    def _of_layer(self, obj, question):
-        """The answer of an object's collections in this view layer."""
-        try:
-            return getattr(obj.original, question)(view_layer=self.view_layer)
-        except RuntimeError:  # objects of instances need not be in the layer
-            return False
 
     def _note(self, kind, obj):
         names = self._names.setdefault(kind, [])

@@ -3,39 +3,12 @@
 import unittest.mock
 
 import bpy
-import numpy as np
-from addon_support import BlenderTest, material, render
+from addon_support import material
 from covtrace_blender import engine
-
-WIDTH, HEIGHT = 96, 72  # of fewer pixels more are edges, about which the pictures are filtered apart
-
-
-def picture(engine, samples=128):
-    """(h, w, 4)."""
-    image = render(engine, samples)
-    return np.stack([np.reshape(image[f"Combined.{letter}"], (HEIGHT, WIDTH)) for letter in "RGBA"], axis=-1)
+from transparent_films import HEIGHT, TransparentFilmTest, picture
 
 
-class ShadowCatchersTest(BlenderTest):
-    def setUp(self):
-        super().setUp()
-        self.scene.render.film_transparent = True
-        self.scene.render.resolution_x, self.scene.render.resolution_y = WIDTH, HEIGHT
-        self.background.inputs["Color"].default_value = (0.3, 0.35, 0.4, 1)
-        self.camera.location, self.camera.rotation_euler = (0, -4, 4), (0.78, 0, 0)
-        bpy.ops.mesh.primitive_cube_add(size=0.9, location=(0.2, 0, 0.45))
-        bpy.context.object.data.materials.append(material(Base_Color=(0.8, 0.2, 0.1, 1), Specular=0.0, Roughness=1.0))
-        self.lamp("SUN", energy=3, angle=0.2).rotation_euler = (0.6, 0.5, 0)
-
-    def assert_quarters(self, delta=0.005, channels=slice(0, 4)):
-        """The means of the quarters of these channels agree."""
-        ours, theirs = picture("COVTRACE"), picture("CYCLES", 256)
-        for y in (slice(0, HEIGHT // 2), slice(HEIGHT // 2, HEIGHT)):
-            for x in (slice(0, WIDTH // 2), slice(WIDTH // 2, WIDTH)):
-                a, b = ours[y, x].mean((0, 1))[channels], theirs[y, x].mean((0, 1))[channels]
-                self.assertLess(np.abs(a - b).max(), delta, f"{a}, {b}")
-        return ours
-
+class ShadowCatchersTest(TransparentFilmTest):
     def test_films_are_transparent_where_the_sky_is(self):
         ours = self.assert_quarters()
         self.assertEqual(ours[0, 0].tolist(), [0, 0, 0, 0])
@@ -85,3 +58,12 @@ class ShadowCatchersTest(BlenderTest):
         self.scene.cycles.film_transparent_glass = True
         self.export()
         self.assertIn("Transparent Glass", " ".join(self.warnings))
+
+    def test_smoke_before_caught_shadows(self):
+        """What it hides of the catchers is not their shadow."""
+        self.plane(material(**self.MATT), size=6, z=-1).is_shadow_catcher = True
+        self.smoke()
+        ours = self.assert_quarters()
+        self.assertGreater(ours[..., 3].max(), 0.9)
+        self.export()
+        self.assertFalse([text for text in self.warnings if "opacity" in text], self.warnings)

@@ -8,7 +8,7 @@ from unittest import mock
 import bpy
 import numpy as np
 import test_varying_volumes
-from addon_support import BlenderTest, geometry_tree, volume_material
+from addon_support import HEIGHT, WIDTH, BlenderTest, geometry_tree, render, volume_material
 from covtrace_blender import openvdb_grids, volume_lattice
 
 VDB = openvdb_grids.library()
@@ -207,11 +207,17 @@ class VolumeObjectsTest(BlenderTest):
         self.assertEqual(len(self.warnings), 1, self.warnings)
         self.assertIn("volume object 'smoke' is not rendered", self.warnings[0])
 
-    def test_opacity_before_a_transparent_film_is_told(self):
-        self.volume(self.smoke())
+    def test_opacity_before_a_transparent_film(self):
+        self.background.inputs["Color"].default_value = (1, 0.9, 0.8, 1)
+        self.scene.cycles.max_bounces = self.scene.cycles.volume_bounces = self.scene.covtrace.max_depth
         self.scene.render.film_transparent = True
+        for color in (None, (0.8, 0.2, 0.1, 1)):
+            self.volume(self.smoke(), **({"Color": color} if color else {}))
+            alphas = [np.reshape(render(engine, 64)["Combined.A"], (4, HEIGHT // 4, 4, WIDTH // 4)).mean((1, 3)) for engine in ("COVTRACE", "CYCLES")]
+            self.assertLess(np.abs(alphas[0] - alphas[1]).max(), 0.003, alphas)
+            self.assertGreater(np.ptp(alphas[0]), 0.3)
         self.export()
-        self.assertEqual(self.warnings, ["volumes before a transparent film or shadow catchers have less opacity than in Cycles"])
+        self.assertEqual(self.warnings, [])
 
     def test_layers_without_volumes(self):
         self.volume(self.smoke())
