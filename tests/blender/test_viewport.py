@@ -48,21 +48,22 @@ class SessionTest(unittest.TestCase):
         self.session._set, set_image = lambda image: (shapes.append(image.shape), set_image(image)), self.session._set
         self.session.show(self.view(30, 16))
         self.wait(lambda: not self.session.is_busy)
-        self.assertEqual(shapes[0], (12, 16, 3))
-        self.assertEqual(shapes[-1], (48, 64, 3))
+        self.assertEqual(shapes[0], (12, 16, 4))
+        self.assertEqual(shapes[-1], (48, 64, 4))
         self.assertGreater(len(shapes), 2)  # images on the way, too
         self.assertAlmostEqual(self.session.image[24, 32, 0], 1, delta=0.01)
-        self.assertEqual(self.session.image[2, 2, 0], 0)
+        self.assertEqual(self.session.image[2, 2].tolist(), [0, 0, 0, 0])
+        self.assertEqual(self.session.image[24, 32, 3], 1)
 
     def test_newer_views_end_older_ones(self):
         self.session.show(self.view(30, 1e6))
         self.wait(lambda: self.session.image is not None and len(self.session.image) == 48)
         process = self.session._process
-        wide = (self.session.image > 0.5).mean()
+        wide = (self.session.image[..., :3] > 0.5).mean()
         self.session.show(self.view(90, 4))
         self.wait(lambda: not self.session.is_busy)
         self.assertIsNotNone(process.returncode)
-        self.assertLess((self.session.image > 0.5).mean(), 0.3 * wide)
+        self.assertLess((self.session.image[..., :3] > 0.5).mean(), 0.3 * wide)
 
     def test_stopping_ends_the_program(self):
         self.session.show(self.view(30, 1e6))
@@ -126,7 +127,7 @@ class WindowTest(unittest.TestCase):
         lines = [line for line in done.stdout.splitlines() if line.startswith("FOUND ")]
         self.assertTrue(lines, done)
         found = json.loads(lines[0][6:])
-        self.assertEqual(set(found["views"]), {"perspective", "nearer", "moved", "ortho", "camera", "edited"})
+        self.assertEqual(set(found["views"]), {"perspective", "nearer", "moved", "ortho", "camera", "edited", "opaque", "clear"})
         for name, view in found["views"].items():
             with self.subTest(name):
                 self.assertEqual(view["failure"], "")
@@ -137,6 +138,12 @@ class WindowTest(unittest.TestCase):
                         self.assertAlmostEqual(a, b, delta=0.02, msg=f"{shown} {view}")
         places = [tuple(view["expected"]) for view in found["views"].values()]
         self.assertEqual(len(set(places)), 6)
+        # Blender's own grey is behind transparent films.
+        for name, alpha in (("opaque", [1, 1]), ("clear", [0, 1])):
+            red, green, blue = found["views"][name]["corner"]
+            self.assertEqual(found["views"][name]["alpha"], alpha)
+            self.assertEqual(red > 0.5 and green < 0.05, name == "opaque", found["views"][name])
+            self.assertEqual(abs(red - green) < 0.02 and 0.1 < red < 0.5, name == "clear", found["views"][name])
         self.assertTrue(found["runs"])
         self.assertFalse(found["left"])
         self.assertEqual(found["sessions"], 0)

@@ -71,7 +71,7 @@ def look(name):
     at = location_3d_to_region_2d(region, seen, bpy.data.objects["ball"].location)
     s = session()
     found["views"][name] = {"expected": (at.x / region.width, at.y / region.height), "image": middle_of(s.image),
-                            "screen": middle_of(screen()), "size": s.image.shape, "region": (region.width, region.height),
+                            "screen": middle_of(screen()), "corner": screen()[30, 30].tolist(), "alpha": [float(f(s.image[..., 3])) for f in (np.min, np.max)], "size": s.image.shape, "region": (region.width, region.height),
                             "failure": s.failure}
 
 
@@ -138,6 +138,14 @@ def steps():
     yield 0.5
     look("edited")
     edit("OBJECT")
+    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.8, 0, 0, 1)
+    for is_clear in (False, True):
+        bpy.context.scene.render.film_transparent = is_clear
+        yield 1.0
+        yield is_done
+        yield 0.5
+        look("clear" if is_clear else "opaque")
+    bpy.context.scene.render.film_transparent = False
     bpy.context.scene.covtrace.viewport_samples = 1e6
     bpy.data.objects["ball"].location.x += 0.1
     yield lambda: session()._process is not None and "1000000.0" in session()._process.args
