@@ -73,7 +73,7 @@ class HoldoutsTest(TransparentFilmTest):
         self.assert_hole()
 
     def test_films_that_are_not_transparent(self):
-        """Of a world that the camera does not see, too."""
+        """Also where the camera does not see the world."""
         self.scene.render.film_transparent = False
         self.hole.is_holdout = True
         self.assert_hole()

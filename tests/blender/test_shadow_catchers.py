@@ -60,7 +60,7 @@ class ShadowCatchersTest(TransparentFilmTest):
         self.assertIn("Transparent Glass", " ".join(self.warnings))
 
     def test_smoke_before_caught_shadows(self):
-        """What it hides of the catchers is not their shadow."""
+        """Its opacity before the catchers is not their shadow."""
         self.plane(material(**self.MATT), size=6, z=-1).is_shadow_catcher = True
         self.smoke()
         ours = self.assert_quarters()

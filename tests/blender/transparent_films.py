@@ -1,4 +1,4 @@
-"""What the tests of transparent films share: a picture of a cube with its alpha, against Cycles."""
+"""Support for tests of transparent films: a cube with its alpha, against Cycles."""
 
 import os
 import tempfile

@@ -160,6 +160,15 @@ TEST(BytesPerPixel, AreAsTheRecordsSay) {
     for (const Method method : {Method::uniform, Method::covariance, Method::hybrid})
         EXPECT_EQ(film_bytes_per_pixel(method, {.surfaces = true}),
                   film_bytes_per_pixel(method) + (method == Method::hybrid ? 2 : 1) * 52u);
+    for (const Method method : {Method::uniform, Method::covariance, Method::hybrid}) {
+        const FilmParts plain = film_parts(method);
+        FilmParts more = plain;
+        more.opacity = true;
+        const size_t added = Film({0, 0, 4, 3}, more).memory() - Film({0, 0, 4, 3}, plain).memory();
+        EXPECT_EQ(added, 4u * 12);
+        EXPECT_EQ(film_bytes_per_pixel(method, more),
+                  film_bytes_per_pixel(method, plain) + (method == Method::hybrid ? 2 : 1) * 4u);
+    }
 }
 
 }  // namespace
