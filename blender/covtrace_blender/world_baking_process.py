@@ -16,8 +16,9 @@ import numpy as np
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from shader_nodes.light_path import value_for
 
-# Texels this many times brighter than the mean, where they are few, are rendered again with more samples: suns.
-BRIGHT, MOST_OF_IMAGE, SAMPLES_OF_BRIGHT = 20, 0.01, 4096
+# Texels this many times brighter than the mean, where they are few, are rendered again with more samples: suns. Those of a sky are few texels;
+# those of a picture may be thousands, which all of these samples together are for.
+BRIGHT, MOST_OF_IMAGE, SAMPLES_OF_BRIGHT, SAMPLES_TOGETHER = 20, 0.01, 4096, 1 << 21
 
 
 def main(library, name, time, image, rows, samples, ray):
@@ -81,7 +82,7 @@ def render(scene, width, height, samples):
     # Half a pixel further, since the limits are rounded down.
     border.border_min_x, border.border_max_x = (x0 + 0.5) / width, (x1 + 0.5) / width
     border.border_min_y, border.border_max_y = (y0 + 0.5) / height, (y1 + 0.5) / height
-    values[y0:y1, x0:x1] = pixels(scene, SAMPLES_OF_BRIGHT)
+    values[y0:y1, x0:x1] = pixels(scene, min(SAMPLES_OF_BRIGHT, SAMPLES_TOGETHER // ((y1 - y0) * (x1 - x0))))
     return values
 
 
