@@ -82,8 +82,8 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     for (const Warnings* w : {&textures.warnings(), &lights.warnings()})
         description.warnings.insert(description.warnings.end(), w->begin(), w->end());
     for (const MediumDescription& m : description.media)
-        media.push_back(
-            {m.sigma_a, m.sigma_s, m.emission, m.g, m.density.get(), m.glow.get(), m.source.get(), m.is_seen});
+        media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g, m.density.get(), m.glow.get(),
+                         m.source.get(), m.is_seen});
     has_lens_or_motion = camera.has_lens() || anything_moves(description);
     has_interfaces = geometry.has_interfaces();
     shadows_differ = geometry.shadows_differ();

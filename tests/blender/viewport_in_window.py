@@ -71,7 +71,8 @@ def look(name):
     at = location_3d_to_region_2d(region, seen, bpy.data.objects["ball"].location)
     s = session()
     found["views"][name] = {"expected": (at.x / region.width, at.y / region.height), "image": middle_of(s.image),
-                            "screen": middle_of(screen()), "corner": screen()[30, 30].tolist(), "alpha": [float(f(s.image[..., 3])) for f in (np.min, np.max)], "size": s.image.shape, "region": (region.width, region.height),
+                            "screen": middle_of(screen()), "corner": screen()[30, 30].tolist(),
+                            "alpha": [float(f(s.image[..., 3])) for f in (np.min, np.max)], "size": s.image.shape, "region": (region.width, region.height),
                             "failure": s.failure}
 
 
