@@ -222,7 +222,7 @@ class Layers(CliTest):
         samples = self.layers("--spp", "8", "--max-spp", "10").pixels["samples.Y"]
         self.assertLessEqual(max(samples), 10)
         # The limit holds for the first samples, too.
-        for method in ("covariance", "hybrid"):
+        for method in ("covariance", "hybrid", "uniform"):
             self.assertLessEqual(max(self.layers("--method", method, "--spp", "8", "--max-spp", "2").pixels["samples.Y"]), 2)
 
     def test_chosen_layers(self):

@@ -66,7 +66,6 @@ class Warnings(CliTest):
             (["--method", "covariance", "--even-counts"], "--even-counts"),
             (["--method", "covariance", "--denoiser", "oidn"], "--denoiser changes nothing"),
             (["--method", "uniform", "--cov-spp", "1"], "--cov-spp"),
-            (["--method", "uniform", "--max-spp", "3"], "--max-spp"),
             (["--method", "uniform", "--occlusion", "none"], "--occlusion"),
             (["--method", "uniform", "--brdf-covariance", "global"], "--brdf-covariance"),
             (["--method", "uniform", "--texture-bandwidth", "highest"], "--texture-bandwidth"),
@@ -81,7 +80,8 @@ class Warnings(CliTest):
                 self.assertEqual([fragment in text for text in texts], [True], result)
                 self.assertEqual(warnings_of(self.render(TINY, "--spp", "1", *options, "--quiet")), [])
         for options in (["--method", "covariance", "--density", "thesis", "--filter", "matched", "--progressive", "--max-spp", "9"],
-                        ["--even-counts", "--occlusion", "grid", "--voxels", "20", "--cov-spp", "1"]):
+                        ["--even-counts", "--occlusion", "grid", "--voxels", "20", "--cov-spp", "1"],
+                        ["--method", "uniform", "--max-spp", "3"]):
             self.assertEqual(warnings_of(self.render(TINY, "--spp", "1", *options)), [], options)
 
     def test_options_of_merge_and_measure_that_change_nothing(self):

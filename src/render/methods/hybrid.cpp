@@ -12,6 +12,7 @@
 #include "reconstruction/luminance.h"
 #include "render/develop.h"
 #include "render/methods/reconstruction_times.h"
+#include "render/round.h"
 #include "render/rounds.h"
 #include "render/sample_knowledge.h"
 #include "render/scene_analysis.h"
@@ -24,9 +25,6 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
-/// Least samples per pixel before an error is believed: fewer cannot tell that it is small, as
-/// paths that carry much light and are rare have not been met yet.
-constexpr double kLeastForError = 16;
 
 class HybridRender {
   public:

@@ -22,7 +22,6 @@ std::vector<std::string> idle_options(const RenderOptions& o, bool insists_on_de
     const bool predicts = o.method != Method::uniform;
     const std::string both = "covariance or hybrid";
     require(o.cov_spp.has_value(), "--cov-spp", predicts, both);
-    require(o.max_spp.has_value(), "--max-spp", predicts, both);
     require(o.occlusion != standard.occlusion, "--occlusion", predicts, both);
     require(o.brdf_covariance != standard.brdf_covariance, "--brdf-covariance", predicts, both);
     require(o.texture_bandwidth != standard.texture_bandwidth, "--texture-bandwidth", predicts,

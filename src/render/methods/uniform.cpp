@@ -24,10 +24,10 @@ bool plan_uniform(RenderJob& job) {
     const Film& film = s.films[0];
     if (job.options.error) {
         const double error = estimated_error(film);
-        if (error < *job.options.error) return false;
+        if (s.taken >= kLeastForError && error < *job.options.error) return false;
         // The estimate is not a number as long as the error is not known.
-        if (const double enough = s.taken * sqr(error / *job.options.error); enough > 0)
-            job.enough = enough;
+        if (const double enough = s.taken * sqr(error / *job.options.error); std::isfinite(enough))
+            job.enough = std::max(kLeastForError, enough);
     }
     const bool alone = job.keeping.shard.is_all();
     const double target = job.plan_round(alone ? next_round(s.taken) : *job.target_spp);
