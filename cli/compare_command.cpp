@@ -5,7 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -47,6 +49,15 @@ void smooth_root(Image& image, double deviation) {
                 for (size_t i = 0; i < mean.size(); ++i) c.values[i] = smoothed.color[i][k];
 }
 
+/// Ratios as text, one after the other; those of nothing to nothing, which are not a number, are
+/// dashes.
+template <typename Format>
+std::string ratios_as_text(std::span<const double> ratios, const Format& format) {
+    std::vector<std::string> texts;
+    for (const double ratio : ratios) texts.push_back(std::isnan(ratio) ? "-" : format(ratio));
+    return fmt::format("{}", fmt::join(texts, " "));
+}
+
 /// Writes a page with both images side by side, the FLIP map and the measures.
 void write_comparison(const CompareArguments& a, const Image& image, const Image& reference,
                       const Comparison& c) {
@@ -57,8 +68,6 @@ void write_comparison(const CompareArguments& a, const Image& image, const Image
         return whole.data == c.bounds ? whole : cropped(whole, c.bounds);
     };
     const Image shown_image = part(image), shown_reference = part(reference);
-    std::vector<std::string> deciles;
-    for (double ratio : c.decile_ratio) deciles.push_back(format_number(ratio));
     viewer::Report report;
     report.title = name(a.image) + " against " + name(a.reference);
     report.images = {{name(a.image), &shown_image, {}, {{1, c.flip_map}}},
@@ -69,11 +78,9 @@ void write_comparison(const CompareArguments& a, const Image& image, const Image
                     {"MSE", format_number(c.mse)},
                     {"PSNR", format_number(c.psnr) + " dB"},
                     {"FLIP", format_number(c.flip)},
-                    {"mean A / mean B",
-                     fmt::format("{} {} {}", format_number(c.mean_ratio[0]),
-                                 format_number(c.mean_ratio[1]), format_number(c.mean_ratio[2]))},
+                    {"mean A / mean B", ratios_as_text(c.mean_ratio, format_number)},
                     {"mean A / mean B by brightness, darkest first",
-                     fmt::format("{}", fmt::join(deciles, " "))}};
+                     ratios_as_text(c.decile_ratio, format_number)}};
     if (c.nonfinite > 0)
         report.facts.push_back({"values that are not finite", std::to_string(c.nonfinite)});
     write_report_file(report, a.report);
@@ -110,13 +117,14 @@ int compare_images(const CompareArguments& a) {
         fmt::print("{}\n", j.dump());
         return 0;
     }
+    const auto digits = [](double ratio) { return fmt::format("{:.5f}", ratio); };
     fmt::print(
         "mse             {:.6g}\nrelmse          {:.6g}\nrelmse_trimmed  {:.6g}\n"
         "relmse_median   {:.6g}\npsnr            {:.3f} dB\nflip            {:.5f}\n"
-        "mean_ratio      {:.5f}\ndecile_ratio    {:.5f}\nnonfinite       {}\n"
+        "mean_ratio      {}\ndecile_ratio    {}\nnonfinite       {}\n"
         "identical       {}\n",
         c.mse, c.relmse, c.relmse_trimmed, c.relmse_median, c.psnr, c.flip,
-        fmt::join(c.mean_ratio, " "), fmt::join(c.decile_ratio, " "), c.nonfinite,
+        ratios_as_text(c.mean_ratio, digits), ratios_as_text(c.decile_ratio, digits), c.nonfinite,
         c.identical ? "yes" : "no");
     return 0;
 }

@@ -156,6 +156,11 @@ class Compare(CliTest):
         self.assertEqual(result.code, DONE, result)
         self.assertEqual({line.split()[0] for line in result.stdout.splitlines()}, KEYS)
 
+    def test_groups_without_light_are_dashes(self):
+        result = self.run_program("compare", self.image, self.image)
+        line = next(line for line in result.stdout.splitlines() if line.startswith("decile_ratio"))
+        self.assertEqual(line.split()[1:], ["-"] * 3 + ["1.00000"] * 7)  # the sky is black
+
     def test_images_that_cannot_be_compared(self):
         other = self.rendered("--resolution", "30x40", output="other.exr")
         self.assert_fails(self.run_program("compare", self.image, other), USAGE, "60x40", "30x40")
