@@ -192,6 +192,26 @@ TEST(Budget, TellsTheFactorThatItMakes) {
     EXPECT_EQ(allocate(density, 122, least, 100), (std::vector<std::uint32_t>{4, 6, 12, 100}));
 }
 
+/// Counts do not depend on the densities' unit: those of a dark scene may be 1e-30.
+TEST(Budget, CountsDoNotDependOnTheUnitOfDensities) {
+    const std::vector<double> density{0.5, 1, 2, 40};
+    const std::vector<std::uint32_t> least{4, 0, 0, 0}, expected{4, 6, 12, 100};
+    for (const double unit : {1e-300, 1e-30, 1e-12, 1e12, 1e30, 1e300}) {
+        std::vector<double> scaled = density;
+        for (double& d : scaled) d *= unit;
+        EXPECT_EQ(allocate(scaled, 122, least, 100), expected) << unit;
+        EXPECT_NEAR(density_factor(scaled, 122, least, 100).value_or(0) * unit, 6, 1e-6) << unit;
+    }
+}
+
+/// A pixel whose density is not a number neither loses the samples that it has nor takes away those
+/// of all others.
+TEST(Budget, DensitiesThatAreNoNumbersConcernTheirPixelsAlone) {
+    const std::vector<std::uint32_t> two(5, 2);
+    EXPECT_EQ(allocate(std::vector<double>{NAN, 1, -3, 2, INFINITY}, 38, two, 20),
+              (std::vector<std::uint32_t>{2, 5, 2, 9, 20}));
+}
+
 TEST(Budget, GivesBackTheFactorOfAnyMean) {
     std::vector<float> density(1000);
     for (std::size_t i = 0; i < density.size(); ++i) density[i] = 0.001F * float(i * i % 977);

@@ -135,7 +135,8 @@ std::vector<std::uint32_t> counts_of(std::size_t n, const Wanted& wanted, double
     return counts;
 }
 
-/// Multiples of a density, never below `at_least` nor above `most(i)`.
+/// Multiples of a density, never below `at_least` nor above `most(i)`. Of a density that is below
+/// zero or not a number `at_least` is the multiple, of an infinite one `most(i)`.
 template <std::floating_point T, typename Most>
 struct Multiple {
     std::span<const T> density;
@@ -143,8 +144,8 @@ struct Multiple {
     Most most;
 
     double operator()(std::size_t i, double factor) const {
-        const double lo = at_least[i];
-        return std::clamp(factor * double(density[i]), lo, std::max(lo, most(i)));
+        const double lo = at_least[i], wanted = factor * double(density[i]);
+        return wanted > lo ? std::min(wanted, std::max(lo, most(i))) : lo;
     }
     double sum(double factor) const {
         double s = 0;
@@ -153,8 +154,13 @@ struct Multiple {
     }
     /// The factor with which the sum is, or comes nearest to, `total`.
     double factor_of(std::int64_t total) const {
+        // Densities have any unit: the factor is sought as far above the one that no limit changes.
+        double all = 0;
+        for (const T d : density)
+            if (d > 0 && std::isfinite(d)) all += double(d);
+        const double free = all > 0 ? std::min(double(total) / all, 1e295) : 1;
         double hi = 1;
-        while (sum(hi) < double(total) && hi < 1e12) hi *= 2;
+        while (sum(hi) < double(total) && hi < 1e12 * std::max(1.0, free)) hi *= 2;
         return level_of(density.size(), total, *this, 0, hi);
     }
 };
@@ -183,6 +189,8 @@ template <std::floating_point T, typename Most>
 /// Sample counts with the given total, as near to a multiple of `density` as `at_least` (per
 /// pixel, what has been taken already) and `at_most` (one number) allow. The sum is exactly `total`
 /// where the limits allow it, else as near to it as they do. Fractions are carried along the rows.
+/// Where the density is zero, below, or not a number a pixel keeps what it has; where it is
+/// infinite the pixel gets `at_most`.
 template <DensityRange Densities>
 [[nodiscard]] std::vector<std::uint32_t> allocate(const Densities& density, std::int64_t total,
                                                   std::span<const std::uint32_t> at_least,
