@@ -41,6 +41,20 @@ void set_crop(const PixelBounds& c, FilmDescription& film) {
     film.pixel_bounds = {c.x0, c.x1, c.y0, c.y1};
 }
 
+/// Opens the lens to an f-number: focal length over the diameter of the aperture.
+void open_lens(float f_number, CameraDescription& camera) {
+    if (camera.kind != CameraDescription::Kind::perspective)
+        throw Error(ErrorKind::usage, OptionName{"fstop"},
+                    "orthographic and spherical cameras have no focal length; expected a "
+                    "perspective one, as by --camera");
+    // A lens that is not the scene's own is that of a full-frame sensor, 24 mm high: focal length
+    // from the field of view, in metres.
+    const float focal_length = camera.lens
+                                   ? float(paraxial_lens(camera.lens->surfaces).focal_length)
+                                   : 0.012f / std::tan(camera.fov * kPi / 360);
+    camera.lens_radius = focal_length / (2 * f_number);
+}
+
 }  // namespace
 
 void apply(const SceneOverrides& overrides, SceneDescription& scene) {
@@ -55,14 +69,7 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
     if (overrides.resolution && is_framed(scene) && !frame_all(scene))
         throw Error(ErrorKind::scene, "the scene is too large to place a camera");
     if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
-    if (overrides.f_number) {
-        // A lens that is not the scene's own is that of a full-frame sensor, 24 mm high: focal
-        // length from the field of view, in metres.
-        const float focal_length =
-            scene.camera.lens ? float(paraxial_lens(scene.camera.lens->surfaces).focal_length)
-                              : 0.012f / std::tan(scene.camera.fov * kPi / 360);
-        scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
-    }
+    if (overrides.f_number) open_lens(*overrides.f_number, scene.camera);
     if (overrides.max_depth) scene.max_depth = *overrides.max_depth;
     add_lamps(overrides.lamps, scene);
     if (overrides.environment) replace_environment(*overrides.environment, scene);

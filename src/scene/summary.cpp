@@ -28,6 +28,22 @@ struct ShapeCounts {
     }
 };
 
+std::string kind_text(const CameraDescription& camera) {
+    switch (camera.kind) {
+        case CameraDescription::Kind::orthographic:
+            return "orthographic";
+        case CameraDescription::Kind::spherical:
+            return camera.mapping == CameraDescription::Mapping::equal_area
+                       ? "spherical, equal-area"
+                       : "spherical, equirectangular";
+        default:
+            break;
+    }
+    std::ostringstream out;
+    out << "perspective, field of view " << camera.fov;
+    return out.str();
+}
+
 }  // namespace
 
 std::string summarize(const SceneDescription& scene) {
@@ -40,12 +56,9 @@ std::string summarize(const SceneDescription& scene) {
     out << "scene      " << scene.name << "\n"
         << "film       " << scene.film.width << "x" << scene.film.height << ", "
         << scene.samples_per_pixel << " samples per pixel, depth " << scene.max_depth << "\n"
-        << "camera     "
-        << (camera.kind == CameraDescription::Kind::perspective ? "perspective, field of view "
-                                                                : "orthographic, ")
-        << (camera.kind == CameraDescription::Kind::perspective ? camera.fov : 0.0f)
-        << ", lens radius " << camera.lens_radius << ", focal distance " << camera.focal_distance
-        << ", shutter " << camera.shutter_open << " to " << camera.shutter_close
+        << "camera     " << kind_text(camera) << ", lens radius " << camera.lens_radius
+        << ", focal distance " << camera.focal_distance << ", shutter " << camera.shutter_open
+        << " to " << camera.shutter_close
         << (camera.camera_to_world.is_animated() ? ", moving" : "") << "\n"
         << "view       " << view_text(scene) << "\n"
         << "shapes     " << top.shapes << " (" << top.triangles << " triangles, " << top.patches

@@ -83,6 +83,23 @@ class Camera(CliTest):
         self.assertNotEqual(sharp, self.colours(FRONT, options=["--fstop", "0.01", "--focus", "2"])[1])
         self.assertNotEqual(sharp, pixels)
 
+    def test_an_f_number_needs_a_focal_length(self):
+        """A field of view was made up for these; through an open lens a spherical camera showed something else."""
+        for camera in ('Camera "orthographic"', 'Camera "spherical"'):
+            scene = ELSEWHERE + camera + "\n" + FILM + WORLD
+            self.assert_fails(self.render(scene, "--fstop", "2"), USAGE, "--fstop", "no focal length")
+            self.assertEqual(self.render(scene, "--fstop", "2", "--camera", FRONT).code, DONE)
+
+    def test_info_tells_the_kind(self):
+        for camera, told in (
+            ('"perspective" "float fov" 30', "perspective, field of view 30, lens radius 0"),
+            ('"orthographic"', "orthographic, lens radius 0"),
+            ('"spherical"', "spherical, equal-area, lens radius 0"),
+            ('"spherical" "string mapping" "equirectangular"', "spherical, equirectangular, lens radius 0"),
+        ):
+            self.write("scene.pbrt", f"{ELSEWHERE}Camera {camera}\n" + FILM + WORLD)
+            self.assertIn(f"camera     {told}", self.run_program("info", "scene.pbrt").stdout)
+
     def test_films_know_it(self):
         scene = ELSEWHERE + 'Camera "perspective"\n' + FILM + WORLD
         arguments = ["--checkpoint", "a.film", "--spp", "2", "--camera", FRONT]
