@@ -202,10 +202,26 @@ TEST(TravelPast, GivesThePenumbraItsWidth) {
     const Matrix lit = slice_angular(f.sigma);
     const double across = x2 > 0.5 ? lit(0, 0) : lit(1, 1);
     const double penumbra = s * z / (whole - z),
-                 near = edge_beta<double> * grid.smallest() * whole / (whole - z);
+                 near = edge_beta<double> * grid.smallest(z) * whole / (whole - z);
     EXPECT_LT(near, 0.1 * penumbra);
     const double expected = 1 / (four_pi_sq<double> * (penumbra * penumbra + near * near));
     EXPECT_NEAR(across / expected, 1, 1e-9);
+}
+
+/// A small thing far away, as a moon, changes nothing of what stands beside the ray. The extent of
+/// a point was a share of the whole scene's, five units in this one.
+TEST(TravelPast, KnowsNearOutlinesInALargeScene) {
+    const auto beside_a_ball = [](double far) {
+        OccluderGrid<double> grid;
+        grid.add_sphere({0, 0, 0}, 1);
+        grid.add_sphere({far, 0, 0}, 1);
+        grid.build();
+        const Field sky = distant_source(frame_along<double>(Vec3{0, 0, 1}), {});
+        return trace(arrive_from_infinity(grid, sky, Vec3{0, 1.05, 5}).sigma.spatial());
+    };
+    const double expected = beside_a_ball(10);
+    EXPECT_GT(expected, 0);
+    for (const double far : {1e3, 1e4, 1e5}) EXPECT_NEAR(beside_a_ball(far) / expected, 1, 1e-6);
 }
 
 TEST(TravelPast, IsTravelWhereNothingIsNear) {

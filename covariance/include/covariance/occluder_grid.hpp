@@ -96,6 +96,13 @@ class OccluderGrid {
 
     /// Extent that stands for a point: 1e-4 of the scene's radius, scene units.
     [[nodiscard]] T smallest() const noexcept { return T(0.5e-4) * length(high_ - low_); }
+    /// The same where light arrives at a distance behind it: no more than an angle of 2e-4, so that
+    /// a mountain or a moon far away does not make near outlines blunt; from a thousandth of the
+    /// scene's diameter on, since the mean over a pixel of edges as near as they come is infinite.
+    [[nodiscard]] T smallest(T distance) const noexcept {
+        const T diameter = length(high_ - low_);
+        return std::min(smallest(), T(2e-4) * std::max(distance, T(1e-3) * diameter));
+    }
 
     /// Place where light from infinity that arrives at `point` comes into the scene: the segment
     /// from there on has the occluders that matter. `towards`: unit, from the point to the light.

@@ -132,8 +132,8 @@ template <std::floating_point T>
         const Outline<T>& o = outlines[i];
         past = travel(past, o.ahead - at);
         at = o.ahead;
-        past = occlude(past, std::max(o.distance, grid.smallest()) * o.direction, grid.smallest(),
-                       o.velocity);
+        const T smallest = grid.smallest(whole - at);
+        past = occlude(past, std::max(o.distance, smallest) * o.direction, smallest, o.velocity);
     }
     return travel(past, whole - at);
 }
