@@ -105,7 +105,7 @@ std::string origin(const Image& image) {
         if (const std::string value = metadata_text(image, key); !value.empty())
             text += before + value + after;
     if (metadata_text(image, "complete") == "0") text += ", interrupted: not complete";
-    return text + "\n";
+    return text;
 }
 
 nlohmann::json to_json(const Distribution& d) {
@@ -117,6 +117,7 @@ nlohmann::json to_json(const Distribution& d) {
 
 ImageSummary summarize(const Image& image) {
     ImageSummary summary;
+    summary.origin = origin(image);
     for (const Channel& c : image.channels)
         summary.nonfinite += std::count_if(c.values.begin(), c.values.end(),
                                            [](float v) { return !std::isfinite(v); });
@@ -132,7 +133,8 @@ ImageSummary summarize(const Image& image) {
 }
 
 std::string to_text(const ImageSummary& summary, const Image& image, const std::string& name) {
-    std::string text = name + "\n" + origin(image);
+    std::string text = name + "\n";
+    if (!summary.origin.empty()) text += summary.origin + "\n";
     if (!summary.quantities.empty())
         text += fmt::format("\n{:<22}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "per pixel", "least",
                             "5 %", "median", "95 %", "most", "mean");

@@ -29,6 +29,7 @@ struct UncertainPixel {
 };
 
 struct ImageSummary {
+    std::string origin;  ///< one line about how our own images were made; empty for others
     std::vector<Quantity> quantities;  ///< quantities whose layers the image has
     int64_t nonfinite = 0;             ///< number of such values in all channels
     /// Square root of the mean of the squared relative errors, which `render --error` compares; 0

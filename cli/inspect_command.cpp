@@ -27,6 +27,7 @@ struct InspectArguments {
 /// The summary's main figures, for the page.
 std::vector<viewer::Fact> facts_of(const ImageSummary& summary) {
     std::vector<viewer::Fact> facts;
+    if (!summary.origin.empty()) facts.push_back({"made by", summary.origin});
     for (const Quantity& q : summary.quantities)
         facts.push_back(
             {q.title,

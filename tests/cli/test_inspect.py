@@ -6,7 +6,7 @@ import re
 import unittest
 
 import exr
-from support import DONE, IO, SCENE, USAGE, CliTest
+from support import DONE, INTERRUPTED, IO, SCENE, TINY, USAGE, CliTest
 
 ENTRIES = [f"{i}{j}" for i in range(5) for j in range(i, 5)]
 
@@ -214,6 +214,15 @@ class Pages(CliTest):
                 self.assertNotRegex(page, r"""(src|href)\s*=|@import|url\(|https?://""")
                 self.assert_no_leftovers()
 
+    def test_pages_tell_how_the_image_was_made_and_that_it_is_not_complete(self):
+        self.render(TINY, "--method", "uniform", "--spp", "2", "--shard", "1/2", "--film", "half.film", output=None)
+        self.assertEqual(self.run_program("merge", "half.film", "-o", "half.exr").code, INTERRUPTED)
+        for image, is_complete in (("a.exr", True), ("half.exr", False)):
+            self.run_program("inspect", image, "--report", "page.html")
+            page = (self.folder / "page.html").read_text()
+            self.assertRegex(page, r'\["made by","covtrace [0-9.]+, method (hybrid|uniform)')
+            self.assertEqual("not complete" in page, not is_complete)
+
     def test_json_stays_alone_on_stdout(self):
         result = self.run_program("compare", "a.exr", "b.exr", "--json", "--report", "page.html")
         self.assertIn("relmse", json.loads(result.stdout))
@@ -223,7 +232,7 @@ class Pages(CliTest):
         self.assertEqual(result.code, DONE, result)
         page = (self.folder / "page.html").read_text()
         self.assertIn('["relMSE at the median\'s exposure","0"]', page)
-        self.assertRegex(page, r'\["mean A / mean B by brightness, darkest first","(1|NaN)( (1|NaN)){9}"\]')
+        self.assertRegex(page, r'\["mean A / mean B by brightness, darkest first","(1|-)( (1|-)){9}"\]')
 
     def test_a_part(self):
         result = self.run_program("compare", "a.exr", "b.exr", "--crop", "4,2,12,10", "--report", "page.html")
