@@ -155,8 +155,12 @@ size_t chosen(OptionName option, const std::string& choice, const std::vector<Ch
     for (const Choosable& one : all)
         for (const std::string* name : {&one.name, &one.other})
             if (!name->empty()) names.push_back(*name);
+    // A number alone would be read as how many there are.
+    const char* unnamed = !names.empty() || all.empty() ? ""
+                          : all.size() == 1             ? "number "
+                                                        : "numbers ";
     throw Error(ErrorKind::usage, option,
-                "there is no " + what + " " + in_quotes(choice) + "; the file has " +
+                "there is no " + what + " " + in_quotes(choice) + "; the file has " + unnamed +
                     (all.empty() ? "none" : listed(all)) +
                     (number ? "" : did_you_mean(choice, names)));
 }

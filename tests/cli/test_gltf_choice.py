@@ -123,6 +123,11 @@ class GltfChoice(CliTest):
         self.assert_fails(self.refused("--animation", "Down"), USAGE, '--animation: there is no animation "Down"; the file has none')
         self.assert_fails(self.refused("--animation", "-1", file=ANIMATED), USAGE, '0 "Up", 1 "Away"')
         without = json.loads(json.dumps(FILE))
+        for thing in without["nodes"] + without["cameras"]:
+            thing.pop("name", None)
+        self.assert_fails(self.refused("--camera", "Front", file=without), USAGE, "the file has numbers 0, 1, 2")
+        without["scenes"][0]["nodes"] = [3]
+        self.assert_fails(self.refused("--camera", "1", file=without), USAGE, "the file has number 0")
         without["scenes"][0]["nodes"] = [0]
         self.assert_fails(self.refused("--camera", "Front", file=without), USAGE, '--camera: there is no camera "Front"; the file has none')
         for option in ("--camera", "--gltf-scene", "--animation"):
