@@ -20,8 +20,8 @@ void add_lights(CLI::App* c, SceneOverrides& o) {
         o.environment_rotation = parse_degrees("--environment-rotation", text);
     };
     c->add_option_function<std::string>("--environment-rotation", turn,
-                                        "turn it about the scene's up axis")
-        ->option_text("DEGREES");
+                                        "degrees about the scene's up axis")
+        ->option_text("N");
     add_positive(c, "--environment-scale", o.environment_scale, 1e12, "make it brighter or darker");
     const auto add_lamp = [&o](const std::vector<std::string>& texts) {
         o.lamps.clear();

@@ -77,7 +77,8 @@ void add_output_options(CLI::App* c, RenderArguments& a) {
         ->option_text("FILE");
     add_display_options(c, a.display);
     add_layers(c, "--layers", a.layers, "all, or name,name…: layers beside the image");
-    add_choice(c, "--layer-names", a.layer_names, "whose names the layers get in the EXR");
+    add_choice(c, "--layer-names", a.layer_names, "of layers in EXRs: default, pbrt or blender");
+    c->get_option("--layer-names")->option_text("WHOSE");  // all of them would take another line
     c->add_option("--tev", a.tev, "show the image in the viewer tev while it renders")
         ->check(not_empty())
         ->option_text("HOST:PORT");

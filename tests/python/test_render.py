@@ -356,7 +356,7 @@ class Package(unittest.TestCase):
         """All that change the image and its state; other files, messages and terminals are the program's alone."""
         import inspect
         of_program_alone = {
-            "debug_pixel", "exposure", "help", "layer_names", "max_memory", "ocio_config", "ocio_display",
+            "debug_pixel", "exposure", "fps", "frames", "help", "layer_names", "max_memory", "ocio_config", "ocio_display",
             "ocio_look", "ocio_source", "output", "png", "quiet", "reproducible", "stats", "tev", "tev_layers", "view"}
         text = subprocess.run([os.environ["COVTRACE"], "render", "--help"], capture_output=True,
                               text=True, check=True).stdout
