@@ -4,12 +4,39 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "cli/values.h"
 #include "core/error.h"
+#include "image/output_file.h"
 
 namespace covtrace::cli {
+
+namespace {
+
+/// The shutter of a frame: that of the arguments, or half a frame from 0 on, later by the frame's
+/// time. Throws Error(usage) where times that late are too coarse for it.
+std::array<float, 2> shutter_at(const RenderArguments& a, int frame) {
+    const double begin = frame / a.fps.value_or(kFramesPerSecond);
+    const std::array<float, 2> first = a.overrides.shutter.value_or(
+        std::array{0.0f, static_cast<float>(0.5 / a.fps.value_or(kFramesPerSecond))});
+    const std::array<float, 2> shutter{static_cast<float>(first[0] + begin),
+                                       static_cast<float>(first[1] + begin)};
+    // Scenes have times in single precision: hours from their beginning an exposure would have
+    // another length, and at last none.
+    constexpr double kMostError = 0.1;
+    const double wanted = double(first[1]) - double(first[0]),
+                 got = double(shutter[1]) - double(shutter[0]);
+    if (!(std::abs(got - wanted) <= kMostError * wanted))
+        throw Error(ErrorKind::usage,
+                    fmt::format("--frames: an exposure of {:.3g} seconds is too short to be told "
+                                "apart at {:.9g} seconds, frame {}",
+                                wanted, begin, frame));
+    return shutter;
+}
+
+}  // namespace
 
 FrameRange parse_frames(const std::string& option, const std::string& text) {
     constexpr int kMost = 10'000'000;
@@ -38,7 +65,7 @@ FrameRange parse_frames(const std::string& option, const std::string& text) {
 }
 
 std::string frame_file(const std::string& file, int frame) {
-    if (file.empty()) return file;
+    if (file.empty() || OutputFile::names_stream(file)) return file;
     const std::filesystem::path path = file;
     std::string name = path.filename().string();
     const size_t last = name.find_last_of('#');
@@ -55,11 +82,7 @@ std::string frame_file(const std::string& file, int frame) {
 
 RenderArguments at_frame(const RenderArguments& a, int frame) {
     RenderArguments one = a;
-    const double begin = frame / a.fps;
-    const std::array<float, 2> shutter =
-        a.overrides.shutter.value_or(std::array{0.0f, static_cast<float>(0.5 / a.fps)});
-    one.overrides.shutter = {static_cast<float>(shutter[0] + begin),
-                             static_cast<float>(shutter[1] + begin)};
+    one.overrides.shutter = shutter_at(a, frame);
     one.options.seed += static_cast<uint64_t>(frame);
     one.frame = frame;
     one.reading.is_frame = true;

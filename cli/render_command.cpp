@@ -75,6 +75,7 @@ void parse_texts(RenderArguments& a) {
     resolve(a.display);
     if (a.tev.empty() && (a.tev_layers.all || !a.tev_layers.names.empty()))
         throw Error(ErrorKind::usage, "--tev-layers: expected --tev HOST:PORT");
+    if (a.fps && !a.frames) throw Error(ErrorKind::usage, "--fps: expected --frames");
     if (a.frames && a.scene == kStandardInput)
         throw Error(ErrorKind::usage,
                     "SCENE: standard input is read once; --frames expects a file");
@@ -218,8 +219,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     ProgressLine progress(a.progress);
     Monitor monitor(progress.reporter(), progress.interval(), invocation.start);
     progress.begin();
-    const InterruptGuard guard;
-    monitor.interrupted = &guard.flag();
+    monitor.interrupted = &InterruptGuard::flag();
     const MemoryLimit memory(a.max_memory);
 
     // Read the scene, and check everything before hours of rendering
@@ -295,11 +295,17 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
 int render_frames(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
                   const Ranks* ranks) {
     std::set<std::string> told;
+    const InterruptGuard guard;
     if (!a.frames) return render_scene(std::move(a), invocation, threads, ranks, told);
+    at_frame(a, a.frames->last);  // throws before hours of rendering
     Invocation of_frame{invocation.start, invocation.command_line, {}};
     for (int frame = a.frames->first; frame <= a.frames->last; frame += a.frames->step) {
         const int code = render_scene(at_frame(a, frame), of_frame, threads, ranks, told);
         if (code != 0) return code;
+        // An interrupt that comes while a whole frame is written ends the others.
+        if (InterruptGuard::flag() && frame <= a.frames->last - a.frames->step)
+            throw Error(ErrorKind::interrupted,
+                        fmt::format("interrupted after frame {} of {}", frame, a.frames->last));
         kept_scene().reset();  // before the next one takes as much memory
         of_frame.start = std::chrono::steady_clock::now();
     }

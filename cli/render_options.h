@@ -31,11 +31,13 @@ struct FrameRange {
     int first = 0, last = 0, step = 1;
 };
 
+inline constexpr double kFramesPerSecond = 24;
+
 struct RenderArguments {
     std::string scene, output, png, stats;
     std::optional<FrameRange> frames;
-    double fps = 24;           ///< frames of `frames` per second
-    std::optional<int> frame;  ///< the one of `frames` that is rendered
+    std::optional<double> fps;  ///< frames of `frames` per second, else kFramesPerSecond
+    std::optional<int> frame;   ///< the one of `frames` that is rendered
     std::optional<Preset> preset;
     std::optional<InstructionSet> isa;
     std::string seconds, tev;

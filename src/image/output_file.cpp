@@ -57,9 +57,13 @@ int open_descriptor(const std::filesystem::path& file) {
 
 }  // namespace
 
+bool OutputFile::names_stream(const std::filesystem::path& target) {
+    return open_descriptor(target) >= 0 || is_special(target);
+}
+
 std::filesystem::path OutputFile::resolved(const std::filesystem::path& target) {
     // Streams keep their names: links of /proc lead to things that have none.
-    if (open_descriptor(target) >= 0 || is_special(target)) return target;
+    if (names_stream(target)) return target;
     // Links are followed one by one: a link to a file that is not there yet, or no longer, is one
     // all the same.
     constexpr int kMostLinks = 40;  // as the system allows

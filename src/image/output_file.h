@@ -17,6 +17,8 @@ namespace covtrace {
 /// constructor Error(usage) for named pipes and sockets, which may never be read.
 class OutputFile {
   public:
+    /// Whether a target is a device or a stream, as /dev/stdout, and not a file that is replaced.
+    static bool names_stream(const std::filesystem::path& target);
     /// The file that a target stands for: the target of a symbolic link, or the name itself.
     static std::filesystem::path resolved(const std::filesystem::path& target);
     /// Ending of temporary files' names, after the target's: ".part-<host>-<process id>", so that

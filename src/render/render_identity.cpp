@@ -64,6 +64,7 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
     id["--animation"] = d.animation_choice.empty() ? "all" : d.animation_choice;
     id["--environment"] = d.environment_override.empty() ? "the scene's" : d.environment_override;
     id["--light"] = d.lamps_text.empty() ? "none" : d.lamps_text;
+    id["--frames"] = d.swept.empty() ? "not given" : "given";
     using Surfaces = FilmDescription::Surfaces;
     if (const Surfaces kept = kept_surfaces(d.film, options); kept != Surfaces::none)
         id["first surfaces (--layers)"] =

@@ -1,7 +1,9 @@
 """--frames: the frames of an animation, each with a moment, a seed and files of its own."""
 
 import base64
+import fcntl
 import json
+import os
 import signal
 import struct
 import subprocess
@@ -127,11 +129,59 @@ class Frames(CliTest):
         self.assertTrue((self.folder / "a.0000.exr").exists())
         self.assert_no_file("a.0001.exr")
 
+    def test_an_interrupt_while_a_frame_is_written_ends_them(self):
+        """The reader of a stream holds the program up between two frames."""
+        self.write("a.gltf", json.dumps(MOVING))
+        command = [PROGRAM, "render", "a.gltf", *RENDER, "--frames", "0-2", "-o", "a.exr", "--stats", "/dev/stdout"]
+        ours, its = os.pipe()
+        fcntl.fcntl(its, fcntl.F_SETPIPE_SZ, 4096)
+        os.write(its, b" " * 4096)  # it is full
+        with subprocess.Popen(command, cwd=self.folder, stdout=its, stderr=subprocess.PIPE) as running:
+            os.close(its)
+            until = time.monotonic() + 60 * SLOWER
+            while not (self.folder / "a.0000.exr").exists() and time.monotonic() < until:
+                time.sleep(0.05)
+            time.sleep(0.2 * SLOWER)
+            running.send_signal(signal.SIGINT)
+            time.sleep(0.2 * SLOWER)
+            with open(ours, "rb") as stream:
+                self.assertTrue(json.loads(stream.read())["complete"])
+            told = running.stderr.read().decode()
+            self.assertEqual(running.wait(timeout=60 * SLOWER), INTERRUPTED, told)
+        self.assertIn("interrupted after frame 0 of 2", told)
+        self.assert_no_file("a.0001.exr")
+
+    def test_streams_have_no_number(self):
+        done = self.frames("--frames", "0-1", "-o", "a.exr", "--stats", "/dev/stdout")
+        self.assertEqual(done.code, DONE, done)
+        self.assertEqual(done.stdout.count('"complete": true'), 2)
+        with open(self.folder / "all.json", "wb") as file:
+            command = [PROGRAM, "render", "a.gltf", *RENDER, "--frames", "0-1", "-o", "a.exr", "--stats", "/dev/stdout"]
+            self.assertEqual(subprocess.run(command, cwd=self.folder, stdout=file, stderr=subprocess.DEVNULL).returncode, DONE)
+        self.assertEqual((self.folder / "all.json").read_text().count('"complete": true'), 2)
+
+    def test_frames_go_on_from_frames_alone(self):
+        """Whether lights are those of exporters is judged by the middle of the whole animation, where this one is brighter."""
+        lit = MOVING | {
+            "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 2700}]}},
+            "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}], "scenes": [{"nodes": [0, 1, 2, 3]}],
+            "nodes": [*MOVING["nodes"], {"camera": 0, "translation": [0, 0, 12]},
+                      {"translation": [0, 0, 5], "extensions": {"KHR_lights_punctual": {"light": 0}}}]}
+        self.assertEqual(self.frames("--frames", "0", "--fps", "4", "-o", "a.exr", "--checkpoint", "a.film", file=lit).code, DONE)
+        done = self.frames("--shutter", "0,0.125", "--quiet", "-o", "b.exr", "--checkpoint", "a.0000.film", "--resume", file=lit)
+        self.assert_fails(done, USAGE, "a.0000.film", "--frames: given there, not given here")
+
+    def test_frames_that_are_too_late(self):
+        """Single precision has no exposures as short that late."""
+        self.assert_fails(self.frames("--frames", "0-9999990x9999990", "--fps", "1000", "-o", "a.exr"), USAGE, "--frames", "0.0005 seconds", "9999.99 seconds")
+        self.assertEqual(self.frames("--frames", "86400", "-o", "hour.exr").code, DONE)
+
     def test_refused(self):
         for text in ("", "a", "3-", "-3", "3-1", "1-2x0", "1x", "1-2-3", "1-2x3x4", "99999999", "1 - 2", "+1"):
             self.assert_fails(self.frames(f"--frames={text}", "-o", "a.exr"), USAGE, "--frames", "0-47x4")
         for text in ("0", "-1", "inf", "a"):
             self.assert_fails(self.frames("--frames", "1", f"--fps={text}", "-o", "a.exr"), USAGE, "--fps")
+        self.assert_fails(self.frames("--fps", "30", "-o", "a.exr"), USAGE, "--fps", "--frames")
         self.assert_fails(self.frames("--frames", "0-1", "-o", "a.exr", file=TINY, name="a.pbrt"), USAGE, "--frames", "glTF")
         done = subprocess.run([PROGRAM, "render", "-", "--frames", "0-1", "-o", "a.exr", *RENDER], cwd=self.folder,
                               input=json.dumps(MOVING).encode(), capture_output=True)
