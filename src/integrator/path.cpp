@@ -72,7 +72,7 @@ bool PathTracer::meet(bool found) {
     place_on_strand(bsdf, hit, shape.description.tube_sides, -ray_.direction);
     if (shape.description.is_holdout && looks_straight() &&
         !std::holds_alternative<InterfaceBsdf>(bsdf)) {
-        tell_clear();
+        end_at_holdout();
         return false;
     }
     if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {

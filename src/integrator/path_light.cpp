@@ -7,11 +7,15 @@
 
 namespace covtrace {
 
+void PathTracer::record_last_way(float length) {
+    if (!record_ || record_->count != static_cast<int>(result_.vertices)) return;
+    record_->escape_direction = ray_.direction;
+    record_->escape_glow = glow_;
+    record_->last_way = length;
+}
+
 void PathTracer::escape() {
-    if (record_ && record_->count == static_cast<int>(result_.vertices)) {
-        record_->escape_direction = ray_.direction;
-        record_->escape_glow = glow_;
-    }
+    record_last_way(kInfinity);
     if (looks_straight()) tell_opacity_of_sky();
     // Add light of the environment
     if (!scene_.lights.has_environment()) return;

@@ -8,6 +8,15 @@ void PathTracer::tell_clear() {
     result_.opacity = 1 - (clear_.r + clear_.g + clear_.b) / 3;
 }
 
+void PathTracer::end_at_holdout() {
+    tell_clear();
+    if (!record_) return;
+    const Vec3 last = record_->count > 0
+                          ? record_->vertices[size_t(record_->count - 1)].hit.position
+                          : record_->camera_ray.origin;
+    record_last_way(distance(last, hit_.position));
+}
+
 void PathTracer::tell_opacity_of_sky() {
     if (scene_.lights.has_sky_for(RayKind::camera))
         result_.opacity = 1;

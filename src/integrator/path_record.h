@@ -82,10 +82,12 @@ struct PathRecord {
     Vec3 escape_direction;        ///< direction in which the path left the scene, unit
     float escape_glow = 0;        ///< luminance from the media behind the last vertex
     bool escape_in_view = false;  ///< as PathVertex::in_view; means something where `escaped` > 0
+    float last_way = kInfinity;   ///< length of the way behind the last vertex, up to a holdout
 
     void clear() {
         count = 0;
         escaped = escape_glow = 0;
+        last_way = kInfinity;
     }
 };
 

@@ -196,6 +196,8 @@ class PathTracer {
     bool is_border(const SurfaceHit& hit, const PlacedShape& shape);
 
     // ---- path_light.cpp: light that is found
+    /// Records the way behind the last vertex, where the path ends without another one.
+    void record_last_way(float length);
     void escape();
     void add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex);
     /// Samples a light; `u_kind` chooses the kind of ray that it counts for.
@@ -263,6 +265,8 @@ class PathTracer {
     bool looks_straight() const { return tells_opacity_ && depth_ == 0; }
     /// Tells the opacity of a ray that gets to where nothing is seen.
     void tell_clear();
+    /// Ends the path at a holdout, as where nothing is seen.
+    void end_at_holdout();
     /// Tells the opacity of a ray that leaves the scene.
     void tell_opacity_of_sky();
     /// Tells the opacity of a ray that a medium scatters before the current hit, or the sky.

@@ -52,6 +52,12 @@ bool is_hidden(const SceneDescription& scene, TextureId alpha) {
     return constant && constant->value.r == 0;
 }
 
+/// Rays that find a light: to the camera's a holdout is no light, but what lets them pass is one.
+RayKinds kinds_that_find(const ShapeDescription& s, const AreaLightDescription& light) {
+    const bool is_hole = s.is_holdout && !light.lets_light_pass;
+    return is_hole ? static_cast<RayKinds>(s.visible_to & ~set_of(RayKind::camera)) : s.visible_to;
+}
+
 }  // namespace
 
 Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry,
@@ -78,7 +84,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                        .image = textures ? light.image : -1,
                        .alpha = -1,
                        .is_visible = !is_hidden(scene, shape.alpha),
-                       .visible_to = shape.visible_to,
+                       .visible_to = kinds_that_find(shape, light),
                        .first_light = static_cast<int>(owner.size()),
                        .emitter = std::move(*emitters[i])};
         // A light that is hidden altogether shines as if it had no alpha.

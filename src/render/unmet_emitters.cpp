@@ -44,6 +44,7 @@ void for_each_segment_in_view(const PathRecord& path, const Visit& visit) {
              s.carried * luminance(lobes.lobes[0].value),
              is_transmission(lobes.lobes[0].kind) ? RayKind::transmission : RayKind::glossy};
     }
+    s.length = path.last_way;
     if (path.count < PathRecord::kCapacity) visit(s);
 }
 

@@ -1,5 +1,6 @@
 """Alpha before media and holdouts: 1 less the transmittance to where the camera sees nothing."""
 
+import json
 import math
 import unittest
 
@@ -90,6 +91,22 @@ class Opacity(CliTest):
         image = self.image(lamp + mirror)
         self.assert_opacity(image, 1)
         self.assertAlmostEqual(image["G"][HEIGHT // 2 * WIDTH + WIDTH // 2], 2, delta=0.1)
+
+    def test_lamps_that_holdouts_hide_are_no_error(self):
+        """Small lamps count for the error of pixels whose samples may have missed them."""
+        lamp = ('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [1e6 1e6 1e6]\nTranslate .05 .05 {0}\n'
+                'Shape "sphere" "float radius" .0004 {1}\nAttributeEnd\n')
+        hole = 'Shape "bilinearmesh" "point3 P" [-5 -5 3  5 -5 3  -5 5 3  5 5 3] "bool holdout" true\n'
+        for shown, content in ((True, lamp.format(2, "")), (False, lamp.format(4, "")), (False, lamp.format(2, '"bool holdout" true'))):
+            with self.subTest(content=content):
+                self.rendered("--error", 0.05, "--max-spp", 256, "--stats", "s.json", scene=VIEW + content + hole)
+                spp = json.loads((self.folder / "s.json").read_text())["spp"]
+                self.assertGreater(spp, 200) if shown else self.assertLess(spp, 100)
+
+    def test_glow_before_holdouts_is_predicted(self):
+        glows = medium(ABSORBS, ' "rgb Le" [1 1 1]')
+        image = self.image(glows + 'Translate 0 0 3\nShape "sphere" "float radius" 1 "bool holdout" true\n', "--method", "covariance")
+        self.assertGreater(image["covweight.Y"][HEIGHT // 2 * WIDTH + WIDTH // 2], 0.1)
 
     def test_films_keep_opacity(self):
         """Threads, films that go on and films of parts that are merged change no bit."""
