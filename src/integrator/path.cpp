@@ -49,8 +49,9 @@ bool PathTracer::meet(bool found) {
     // Cross the medium, which may scatter the path before it gets there
     if (is_in_medium()) {
         const float length = found ? hit.t : scene_.unbounded_distance;
-        if (looks_straight()) clear_ *= transmittance(scene_, medium_, ray_, length);
         const MediumEvent event = cross_medium(length);
+        if (looks_straight())
+            clear_ *= event.through ? *event.through : transmittance(scene_, medium_, ray_, length);
         if (event.scatters) {
             if (looks_straight()) tell_opacity_behind(found);
             return scatter_in_medium(event.distance);

@@ -20,7 +20,7 @@ MediumEvent PathTracer::cross_medium(float length) {
         if (record_) glow_ += luminance(contribution);
     }
     // Sample the distance at which the medium scatters
-    MediumEvent event{false, length, {}};
+    MediumEvent event{false, length, {}, {}};
     if (depth_ < max_depth_ && medium.scatters()) {
         sampler_.set_dimension(kMediumPairs + piece);
         Vec2 u = sampler_.next_2d();
@@ -28,6 +28,7 @@ MediumEvent PathTracer::cross_medium(float length) {
         event = sample_event(medium, way, length, beta_, u, light);
     } else {
         event.weight = transmittance(medium, way.column(length));
+        event.through = event.weight;
     }
     beta_ *= event.weight;
     return event;

@@ -207,8 +207,10 @@ Rgb emitted_along(const Medium& medium, const MediumWay& way, float length, floa
 MediumEvent sample_event(const Medium& medium, const MediumWay& way, float length, Rgb throughput,
                          Vec2 u, const std::optional<LightBeside>& light) {
     const float all = sum(throughput);
-    if (!medium.scatters() || !(all > 0))
-        return {false, length, transmittance(medium, way.column(length))};
+    if (!medium.scatters() || !(all > 0)) {
+        const Rgb through = transmittance(medium, way.column(length));
+        return {false, length, through, through};
+    }
 
     const Rgb share = throughput * (1 / all), extinction = medium.extinction(),
               albedo = medium.albedo();
@@ -230,7 +232,7 @@ MediumEvent sample_event(const Medium& medium, const MediumWay& way, float lengt
             medium.scattering * (way.density(distance) * transmittance(medium, column));
         float density = by_distance * sum(share * value);
         if (by_angle > 0) density += by_angle * angles->density(distance);
-        return {true, distance, density > 0 ? value * (1 / density) : Rgb(0)};
+        return {true, distance, density > 0 ? value * (1 / density) : Rgb(0), through};
     };
     if (u.x < by_angle) {
         const float distance = angles->sample(u.y);
@@ -247,7 +249,7 @@ MediumEvent sample_event(const Medium& medium, const MediumWay& way, float lengt
     }
     if (!through) through = transmittance(medium, way.column(length));
     const float probability = by_distance * sum(share * (Rgb(1) - albedo * (Rgb(1) - *through)));
-    return {false, length, probability > 0 ? *through * (1 / probability) : Rgb(0)};
+    return {false, length, probability > 0 ? *through * (1 / probability) : Rgb(0), through};
 }
 
 }  // namespace covtrace

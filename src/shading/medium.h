@@ -71,6 +71,8 @@ struct MediumEvent {
     /// Transmittance (times scattering coefficient) over the density of the event in all channels
     /// together.
     Rgb weight{1};
+    /// Transmittance of all of the way, which takes time, where it had to be known.
+    std::optional<Rgb> through = {};
 };
 
 /// A light beside a ray.
