@@ -39,18 +39,19 @@ std::array<float, 2> shutter_at(const RenderArguments& a, int frame) {
 }  // namespace
 
 FrameRange parse_frames(const std::string& option, const std::string& text) {
-    constexpr int kMost = 10'000'000;
-    const auto is_number = [](const std::string& part) {
-        return !part.empty() && part.size() <= 7 &&
-               std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const auto refuse = [&] {
+        throw Error(ErrorKind::usage,
+                    option +
+                        ": expected a frame, or the first and the last one, and every how many, "
+                        "such as 12, 0-47 or 0-47x4, not '" +
+                        text + "'");
     };
     const auto number = [&](const std::string& part) {
-        if (!is_number(part))
-            throw Error(ErrorKind::usage,
-                        option +
-                            ": expected a frame, or the first and the last one, and every how "
-                            "many, such as 12, 0-47 or 0-47x4, not '" +
-                            text + "'");
+        constexpr int kMost = 9'999'999;  // has as many digits as its text may have
+        const bool is_number =
+            !part.empty() && part.size() <= 7 &&
+            std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+        if (!is_number) refuse();
         return static_cast<int>(parse_whole(option, part, 0, kMost));
     };
     const size_t dash = text.find('-'), cross = text.find('x');
@@ -60,7 +61,7 @@ FrameRange parse_frames(const std::string& option, const std::string& text) {
         frames.last =
             number(text.substr(dash + 1, cross == std::string::npos ? cross : cross - dash - 1));
     if (cross != std::string::npos) frames.step = number(text.substr(cross + 1));
-    if (frames.last < frames.first || frames.step < 1) number("");
+    if (frames.last < frames.first || frames.step < 1) refuse();
     return frames;
 }
 

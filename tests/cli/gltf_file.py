@@ -22,6 +22,11 @@ def uri(data, kind="application/octet-stream"):
     return f"data:{kind};base64," + base64.b64encode(data).decode()
 
 
+def shining(colour):
+    """A material that sends out twice this colour on both sides."""
+    return {"emissiveFactor": colour, "doubleSided": True, "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}}
+
+
 def direction(azimuth, polar):
     """The unit vector at these angles in degrees: azimuth from +x towards +y, polar from +z."""
     a, p = math.radians(azimuth), math.radians(polar)

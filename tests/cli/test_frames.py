@@ -1,6 +1,5 @@
 """--frames: the frames of an animation, each with a moment, a seed and files of its own."""
 
-import base64
 import fcntl
 import json
 import os
@@ -11,16 +10,13 @@ import time
 import unittest
 
 import exr
+from gltf_file import shining, uri
 from support import DONE, INTERRUPTED, PROGRAM, SLOWER, TINY, USAGE, CliTest, warnings_of
 
 # A green square that goes from x = -4 to x = 4 in two seconds, and a red one at x = 0 below; no camera and no light.
 TIMES, WAY = struct.pack("<2f", 0, 2), struct.pack("<6f", -4, 2, 0, 4, 2, 0)
 CORNERS = struct.pack("<12f", -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
 DATA = CORNERS + TIMES + WAY
-
-
-def shining(colour):
-    return {"emissiveFactor": colour, "doubleSided": True, "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}}
 
 
 STILL = {
@@ -40,7 +36,7 @@ STILL = {
         {"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12},
         {"buffer": 0, "byteOffset": 60, "byteLength": 8}, {"buffer": 0, "byteOffset": 68, "byteLength": 24},
     ],
-    "buffers": [{"byteLength": len(DATA), "uri": "data:application/octet-stream;base64," + base64.b64encode(DATA).decode()}],
+    "buffers": [{"byteLength": len(DATA), "uri": uri(DATA)}],
 }
 MOVING = STILL | {"animations": [{"samplers": [{"input": 2, "output": 3}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]}
 WIDTH, HEIGHT = 48, 32

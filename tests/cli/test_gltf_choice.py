@@ -1,21 +1,17 @@
 """--camera, --gltf-scene and --animation: which of a glTF file's own are rendered."""
 
-import base64
 import json
 import struct
 import subprocess
 import unittest
 
 import exr
+from gltf_file import shining, uri
 from support import DONE, PROGRAM, USAGE, CliTest, warnings_of
 
 CORNERS = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]
 CORNERS = struct.pack("<12f", *CORNERS) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
 TIMES = struct.pack("<f", 0) + struct.pack("<3f", 0, 50, 0)
-
-
-def shining(colour):
-    return {"emissiveFactor": colour, "doubleSided": True, "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}}
 
 
 def moving(name, node):
@@ -54,7 +50,7 @@ FILE = {
         {"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12},
         {"buffer": 0, "byteOffset": 60, "byteLength": 4}, {"buffer": 0, "byteOffset": 64, "byteLength": 12},
     ],
-    "buffers": [{"byteLength": 76, "uri": "data:application/octet-stream;base64," + base64.b64encode(CORNERS + TIMES).decode()}],
+    "buffers": [{"byteLength": 76, "uri": uri(CORNERS + TIMES)}],
 }
 ANIMATED = FILE | {"animations": [moving("Up", 0), moving("Away", 1)]}
 RENDER = ["--method", "uniform", "--spp", "1", "--resolution", "4x4", "--progress", "none"]
