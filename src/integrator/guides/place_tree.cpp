@@ -47,13 +47,14 @@ class PlaceTree::Builder {
             if (count > 0 && count < part.size()) {
                 const auto child = static_cast<uint32_t>(tree_.nodes_.size());
                 tree_.nodes_.resize(tree_.nodes_.size() + 2);
-                tree_.nodes_[node] = {axis, split, child};
+                tree_.nodes_[node] = {static_cast<uint32_t>(axis), split, child, 0};
                 build(child, part.first(count), depth + 1);
                 build(child + 1, part.subspan(count), depth + 1);
                 return;
             }
         }
-        tree_.nodes_[node] = {-1, 0, static_cast<uint32_t>(parts_.size())};
+        tree_.nodes_[node] = {0, kNoSplit, node, static_cast<uint32_t>(parts_.size())};
+        tree_.depth_ = std::max(tree_.depth_, depth);
         parts_.push_back(part);
     }
 

@@ -2,8 +2,10 @@
 /// places that it was built from as one another.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -30,24 +32,30 @@ class PlaceTree {
     /// The leaf, numbered as in `parts`, that a place with the unit normal n belongs to; not of an
     /// empty tree.
     uint32_t leaf(Vec3 position, Vec3 n) const {
+        // An array is read at an axis without branches, and leaves lead to themselves so that all
+        // walks are as long as one another: processors would guess branches wrong
+        const std::array<float, 6> place{position.x, position.y, position.z, n.x, n.y, n.z};
         const Node* node = nodes_.data();
-        while (node->axis >= 0) {
-            const float x = node->axis < 3 ? position[node->axis] : n[node->axis - 3];
-            node = &nodes_[node->child + (x < node->split ? 0 : 1)];
-        }
-        return node->child;
+        for (int level = 0; level < depth_; ++level)
+            node = &nodes_[node->child + (place[node->axis] >= node->split ? 1 : 0)];
+        return node->leaf;
     }
     size_t memory() const { return nodes_.capacity() * sizeof(Node); }  ///< bytes
 
   private:
+    /// No number is equal to it or above it.
+    static constexpr float kNoSplit = std::numeric_limits<float>::quiet_NaN();
+
     struct Node {
-        int axis = -1;  ///< 0 to 2: position; 3 to 5: normal; -1: a leaf
-        float split = 0;
-        uint32_t child = 0;  ///< the first of the node's two children, for a leaf its number
+        uint32_t axis = 0;  ///< 0 to 2: position; 3 to 5: normal
+        float split = kNoSplit;
+        uint32_t child = 0;  ///< the first of the node's two children, a leaf itself
+        uint32_t leaf = 0;   ///< number of a leaf
     };
     class Builder;
 
     std::vector<Node> nodes_;
+    int depth_ = 0;  ///< of the deepest leaf
 };
 
 }  // namespace covtrace
