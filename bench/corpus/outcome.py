@@ -23,7 +23,8 @@ NOTHING_REPLACED = {
     "values of the file that mean nothing": (
         "is not known to", "is given twice", "without AttributeBegin", "is not a multiple of", "has another number of values",
         "moves the same property", "has no faces", "has no shape", "reach beyond the image", "the latter counts",
-        "the compressed mesh has", "expected a number", "a scale of zero hides", "has textures but no TEXCOORD"),
+        "the compressed mesh has", "expected a number", "a scale of zero hides", "has textures but no TEXCOORD",
+        "normals that are not finite"),
     "points and lines, drawn": ("points are shown as", "lines are shown as"),
     "as in pbrt-v4 and viewers": ("as in pbrt", "is cut to 1", "cut to 1"),
     "another way to the same image": ("path tracing takes its place", "is ignored: accelerator", "accelerator"),
@@ -35,7 +36,8 @@ NOTHING_REPLACED = {
 OTHER_IMAGES = re.compile(r'integrator "(?:ambientocclusion|function|randomwalk)" is not supported')
 
 EXTENSION = re.compile(r"can't be read without the extensions? (.+?), which (?:is|are) not supported")
-OTHER_VERSIONS = re.compile(r"belongs to pbrt-v3|glTF \"[^\"]*\" is not supported|binary glTF of version|this is no glTF 2\.0")
+OTHER_VERSIONS = re.compile(r"belongs to pbrt-v3|glTF \"[^\"]*\" is not supported|binary glTF of version|this is no glTF 2\.0"
+                            r"|it is of version [\d.]+ of the format")
 PLACE = re.compile(r"^.*?\.(?:pbrt|gltf|glb|vrm|ply)(?: \(JSON chunk\))?(?::\d+)*: (?:[\w.\[\]]+: )?", re.IGNORECASE)
 NAMED = re.compile(r'\b(medium|option) "[^"]*"')
 COUNT = re.compile(r" \(and in \d+ more places?\)$")

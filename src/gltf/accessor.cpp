@@ -164,7 +164,7 @@ size_t accessor_count(const Document& document, int index, const std::string& pl
 }
 
 Numbers read_numbers(const Document& document, int index, size_t components,
-                     const std::string& place) {
+                     const std::string& place, NotFinite not_finite) {
     const tinygltf::Accessor& a = at(document, document.model.accessors, index, "accessors", place);
     const std::string here = element("accessors", static_cast<size_t>(index));
     check_layout(document, a, components, here);
@@ -174,12 +174,15 @@ Numbers read_numbers(const Document& document, int index, size_t components,
     numbers.components = components;
     const auto store = [&](size_t i, const unsigned char* bytes) {
         if (numbers.values.empty()) numbers.values.resize(a.count * components);
-        for (size_t c = 0; c < components; ++c) {
-            const float v = component(bytes + c * size, a.componentType, a.normalized);
-            if (!std::isfinite(v))
-                document.refuse(here, "element " + std::to_string(i) + " is not finite");
-            numbers.values[i * components + c] = v;
-        }
+        float* element = numbers.values.data() + i * components;
+        for (size_t c = 0; c < components; ++c)
+            element[c] = component(bytes + c * size, a.componentType, a.normalized);
+        if (std::all_of(element, element + components, [](float v) { return std::isfinite(v); }))
+            return;
+        if (not_finite == NotFinite::refused)
+            document.refuse(here, "element " + std::to_string(i) + " is not finite");
+        std::fill_n(element, components, 0.0f);
+        numbers.not_finite.push_back(static_cast<uint32_t>(i));
     };
     visit_elements(document, a, size * components, here, store);
     numbers.values.resize(a.count * components);

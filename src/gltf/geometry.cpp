@@ -1,6 +1,7 @@
 #include "gltf/geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "gltf/accessor.h"
@@ -60,6 +61,21 @@ std::vector<Vec3> vectors(const Numbers& n) {
     for (size_t i = 0; i < v.size(); ++i)
         v[i] = {n.element(i)[0], n.element(i)[1], n.element(i)[2]};
     return v;
+}
+
+/// Gives vertices the mean normal of the triangles around them, by area.
+void take_normals_of_triangles(TriangleMesh& mesh, const std::vector<uint32_t>& vertices) {
+    if (vertices.empty()) return;
+    std::vector<Vec3> sums(mesh.positions.size());
+    for (const auto& t : mesh.triangles) {
+        const Vec3& corner = mesh.positions[t[0]];
+        const Vec3 normal = cross(mesh.positions[t[1]] - corner, mesh.positions[t[2]] - corner);
+        for (const uint32_t i : t) sums[i] += normal;
+    }
+    for (const uint32_t i : vertices) {
+        const float size = length(sums[i]);
+        mesh.normals[i] = size > 0 && std::isfinite(size) ? sums[i] / size : Vec3{0, 0, 1};
+    }
 }
 
 std::string place_of(int mesh, size_t primitive) {
@@ -181,14 +197,21 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
     if (count > kMostVertices)
         throw Error(ErrorKind::limit, document_.place(place), "it has more than 2^30 vertices");
     const auto read_attribute = [&](const std::string& name, size_t components) {
-        Numbers n = read_numbers(document_, attribute(name), components, attributes + name);
+        const auto not_finite = name == "NORMAL" ? NotFinite::zero : NotFinite::refused;
+        Numbers n =
+            read_numbers(document_, attribute(name), components, attributes + name, not_finite);
         require_count(document_, n.count(), count, attributes + name);
         return n;
     };
 
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->positions = vectors(read_attribute("POSITION", 3));
-    if (attribute("NORMAL") >= 0) mesh->normals = vectors(read_attribute("NORMAL", 3));
+    std::vector<uint32_t> without_normal;
+    if (attribute("NORMAL") >= 0) {
+        const Numbers normals = read_attribute("NORMAL", 3);
+        mesh->normals = vectors(normals);
+        without_normal = normals.not_finite;
+    }
     read_vertex_values(primitive, layout, *mesh, place);
 
     std::vector<uint32_t> indices;
@@ -200,10 +223,12 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
     }
     Entry result;
     result.count = count;
-    if (has_marks(primitive))
-        result.kept = make_solid(*mesh, indices, mode, mark_radius);
-    else
-        mesh->triangles = triangles(indices, mode);
+    if (!has_marks(primitive)) mesh->triangles = triangles(indices, mode);
+    if (!without_normal.empty())
+        warn(attributes + "NORMAL",
+             "normals that are not finite become the mean of the triangles around them");
+    take_normals_of_triangles(*mesh, without_normal);
+    if (has_marks(primitive)) result.kept = make_solid(*mesh, indices, mode, mark_radius);
     if (mesh->triangles.empty()) return {};
     // By the specification tangents count beside normals only.
     if (layout.needs_tangents && attribute("TANGENT") >= 0 && !mesh->normals.empty() &&

@@ -77,6 +77,29 @@ TEST(GltfGeometry, ReadsNormalisedStridedAndSparseAccessors) {
     expect_near(mesh.normals[2], {0, 0, 5}, 0);
 }
 
+TEST(GltfGeometry, NormalsThatAreNotFiniteAreTheTriangles) {
+    GltfFile file;
+    const float nan = std::nanf("");
+    const int position = file.add_floats({0, 0, 0, 2, 0, 0, 0, 0, 2, 9, 9, 9}, "VEC3", 3);
+    const int normal =
+        file.add_floats({nan, nan, nan, 0, 0, 3, 0, nan, 1, 1, INFINITY, 0}, "VEC3", 3);
+    const int corners = file.add<uint8_t>({0, 1, 2}, 5121, "SCALAR", 1);
+    file.root["meshes"] = {
+        {{"primitives",
+          {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", corners}}}}}};
+    file.add_node({{"mesh", 0}});
+    const auto scene = read(file);
+    const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
+    expect_near(mesh.normals.at(0), {0, -1, 0}, 1e-6f);
+    expect_near(mesh.normals.at(1), {0, 0, 3}, 0);
+    expect_near(mesh.normals.at(2), {0, -1, 0}, 1e-6f);
+    expect_near(mesh.normals.at(3), {0, 0, 1}, 0);  // of no triangle
+    EXPECT_NE(all_warnings(scene).find("meshes[0].primitives[0].attributes.NORMAL: normals that "
+                                       "are not finite"),
+              std::string::npos)
+        << all_warnings(scene);
+}
+
 TEST(GltfGeometry, KeepsTheVerticesThatTrianglesUse) {
     // A hundred squares that pick their corners from the vertices of all of them.
     GltfFile file;
