@@ -82,6 +82,12 @@ class FileCheck {
         while (left() >= sizeof(header)) {
             header = take<nanovdb::io::Header>();
             if (header.magic != NANOVDB_MAGIC_NUMBER) return;  // the library says so
+            // Each version of the format goes on in another way behind the header
+            if (const auto& v = header.version; v.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
+                throw std::runtime_error(
+                    "it is of version " + std::to_string(v.getMajor()) + "." +
+                    std::to_string(v.getMinor()) + "." + std::to_string(v.getPatch()) +
+                    " of the format; expected " + std::to_string(NANOVDB_MAJOR_VERSION_NUMBER));
             std::vector<nanovdb::io::MetaData> grids;
             for (int i = 0; i < header.gridCount; ++i) {
                 grids.push_back(take<nanovdb::io::MetaData>());

@@ -178,6 +178,21 @@ TEST(NanovdbGrid, SizesThatLeadBackOrBeyondAreRefused) {
     EXPECT_FALSE(read(blosc));
 }
 
+TEST(NanovdbGrid, OtherVersionsOfTheFormatAreNamed) {
+    // Before the numbers of versions had three parts the header held a 19
+    std::string bytes = file_of(cube(0, 8, 1));
+    const uint32_t version = 19;
+    std::memcpy(bytes.data() + offsetof(nanovdb::io::Header, version), &version, sizeof version);
+    try {
+        read_nanovdb(bytes, "density", Transform(), {});
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("it is of version 0.0.19 of the format; expected 32"),
+                  std::string::npos)
+            << e.what();
+    }
+}
+
 TEST(NanovdbGrid, ManyWaysToOneNodeAreRefused) {
     auto handle = cube(0, 8, 1);
     auto& tree = handle.grid<float>()->tree();
