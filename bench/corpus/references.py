@@ -12,6 +12,8 @@ LARGE_FILE_POINTER = b"version https://git-lfs"  # a Git repository has this tex
 PBRT_FILE = re.compile(
     rb'"([^"\n]+\.(?:pbrt|ply|exr|png|jpe?g|tga|hdr|pfm|pgm|ppm|qoi|webp|bmp|tiff?|spd|dat|bsdf|nvdb|ptx|ptex|csv|txt)'
     rb'(?:\.gz)?)"', re.IGNORECASE)
+# Templates have words like __FILE__ where a script puts a file's name.
+PLACEHOLDER = re.compile(rb'"string \w+"\s*\[?\s*"(__\w+__)"')
 VALUE = rb'(?:\[[^\]]*\]|"[^"\n]*"|[-+.\deE]+|true|false)'
 FILM = re.compile(rb'\bFilm\s+"[^"\n]*"(?:\s*"[^"\n]*"\s*' + VALUE + rb")*")
 COMMENT = re.compile(rb'"[^"\n]*"|#[^\n\r]*')
@@ -56,7 +58,7 @@ def missing_of_pbrt(path):
     while waiting:
         text = pbrt_text(waiting.pop())
         included = set(INCLUDED.findall(text))
-        for name in {match[1] for match in PBRT_FILE.finditer(text)} | included:
+        for name in {match[1] for match in PBRT_FILE.finditer(text)} | included | set(PLACEHOLDER.findall(text)):
             file = path.parent / os.fsdecode(name)
             if file in seen:
                 continue
