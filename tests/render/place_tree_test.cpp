@@ -61,8 +61,8 @@ TEST(PlaceTree, PlacesFarOutsideBelongToALeaf) {
     std::vector<uint32_t> order;
     std::vector<PlaceTree::Part> parts;
     const PlaceTree tree(places, kMost, order, parts);
-    EXPECT_LT(tree.leaf(Vec3(kInfinity), {0, 0, 1}), parts.size());
-    EXPECT_LT(tree.leaf(Vec3(-kInfinity), {0, 0, -1}), parts.size());
+    EXPECT_LT(tree.leaf({kInfinity, kInfinity, kInfinity}, {0, 0, 1}), parts.size());
+    EXPECT_LT(tree.leaf({-kInfinity, -kInfinity, -kInfinity}, {0, 0, -1}), parts.size());
 }
 
 }  // namespace
