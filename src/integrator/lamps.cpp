@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "core/frame.h"
 #include "core/warp.h"
 #include "integrator/visibility.h"
 #include "scene/added_lamps.h"
@@ -21,6 +22,10 @@ constexpr int kMostPassed = 64;  // backs that a ray passes
 /// share of what is seen. The rest, near the lamp, may be brighter.
 constexpr float kGoal = 0.6f, kBrighterThan = 0.75f;
 constexpr float kLeastLit = 0.1f;  // share of the rays by which a lamp has to be seen to light
+/// Share of what the camera sees that some light from outside must reach; a room with a window is
+/// lit, and so is what stands in its own shadow.
+constexpr float kLeastReached = 0.5f;
+constexpr int kSkyRays = 8;  // per place that is seen
 
 /// Whether light passes surfaces of a material: borders of media, and what is seen but throws no
 /// shadow.
@@ -55,6 +60,8 @@ class Lamps {
           camera_(scene.camera, scene.film.width, scene.film.height) {}
 
     void stand() {
+        std::erase_if(scene_.lamps,
+                      [&](const LampDescription& l) { return l.is_for_the_dark && !is_dark(); });
         const auto open = std::count_if(scene_.lamps.begin(), scene_.lamps.end(),
                                         [](const LampDescription& l) { return !l.power; });
         for (LampDescription& lamp : scene_.lamps) {
@@ -96,6 +103,49 @@ class Lamps {
         return std::abs(dot(hit.ng, away)) / (distance * distance * distance);
     }
 
+    /// Whether a ray from a hit that is seen along `view` leaves the scene.
+    bool escapes(const SurfaceHit& hit, Vec3 view, Vec3 direction) const {
+        if (dot(hit.ng, view) * dot(hit.ng, direction) >= 0) return false;
+        Ray shadow{Geometry::offset_origin(hit, direction), direction, hit.time};
+        shadow.kind = RayKind::shadow;
+        return !geometry_.occluded(shadow);
+    }
+
+    /// Whether light from outside, the distant lights and the sky, reaches little of what is seen.
+    bool is_dark() const {
+        int seen = 0, reached = 0;
+        for_all([&](float x, float y) {
+            const Ray view = view_ray(x, y);
+            SurfaceHit hit;
+            if (!follow(scene_, geometry_, view, hit)) return;
+            ++seen;
+            reached += is_reached(hit, view.direction);
+        });
+        return seen > 0 && float(reached) < kLeastReached * float(seen);
+    }
+
+    bool is_reached(const SurfaceHit& hit, Vec3 view) const {
+        for (const LightDescription& light : scene_.lights)
+            if (const auto* distant = std::get_if<DistantLight>(&light.value);
+                distant && escapes(hit, view, light.light_to_world.vector(distant->direction)))
+                return true;
+        const Frame frame = Frame::from_z(face_forward(hit.ng, -view));
+        for (int i = 0; i < kSkyRays; ++i) {
+            constexpr float kGolden = 0.61803399f;
+            const float turn = float(i) * kGolden;
+            const Vec2 u{(float(i) + 0.5f) / kSkyRays, turn - std::floor(turn)};
+            if (escapes(hit, view, frame.to_world(square_to_cosine_hemisphere(u)))) return true;
+        }
+        return false;
+    }
+
+    /// Visits the middles of a grid of the unit square.
+    template <typename Visit>
+    static void for_all(const Visit& visit) {
+        for (int i = 0; i < kSide * kSide; ++i)
+            visit((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+    }
+
     /// Power by which a point light brings what it lights to the goal.
     float power_at(Vec3 place) const {
         std::vector<float> lit;
@@ -103,10 +153,6 @@ class Lamps {
             SurfaceHit hit;
             if (!follow(scene_, geometry_, ray, hit)) return;
             if (const float e = irradiance(hit, place); e > 0 && std::isfinite(e)) lit.push_back(e);
-        };
-        const auto for_all = [](const auto& visit) {
-            for (int i = 0; i < kSide * kSide; ++i)
-                visit((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
         };
         for_all([&](float x, float y) { add(view_ray(x, y)); });
         if (float(lit.size()) < kLeastLit * kSide * kSide)  // nothing that is in view: all around
@@ -127,8 +173,14 @@ class Lamps {
 
     void tell(LampDescription lamp, Vec3 place) {
         lamp.at = place;
+        const std::string text = '"' + lamp_text(lamp) + '"';
         scene_.warnings.push_back(
-            {{}, "a lamp has the power that suits the view: \"" + lamp_text(lamp) + '"'});
+            {{},
+             lamp.is_for_the_dark
+                 ? "walls keep that light from most of what is seen; a lamp at the camera lights "
+                   "it: --light " +
+                       text
+                 : "a lamp has the power that suits the view: " + text});
     }
 
     void light(const LampDescription& lamp, Vec3 place) {

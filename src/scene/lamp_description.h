@@ -16,6 +16,8 @@ struct LampDescription {
     /// As that of PointLight; none: so that the camera sees what the lamp lights.
     std::optional<float> power;
     int area_light = -1;  ///< index of the sphere's emission, which has no power yet
+    /// Whether it stands only where the light of `complete` does not reach what the camera sees.
+    bool is_for_the_dark = false;
 };
 
 }  // namespace covtrace

@@ -123,6 +123,20 @@ class Light(CliTest):
         image, _ = self.seen("--light", "camera", "--environment", "0.25", scene=dark)
         self.assertAlmostEqual(image["G"][0], 0.25, places=4)
 
+    def test_rooms_that_no_light_from_outside_reaches_get_a_lamp(self):
+        dark = ROOM.replace('LightSource "infinite"\n', "")
+        image, warnings = self.seen(scene=dark)
+        self.assertAlmostEqual(self.mean(image["G"]), 0.6 * REFLECTANCE, delta=0.01)
+        self.assertRegex(warnings[-1], "walls keep that light from most of what is seen")
+        told = re.search('--light "(.*)"', warnings[-1])[1]
+        again, _ = self.seen("--light", told, scene=dark)
+        self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
+        # Outside, and where half of the room's ceiling is open, the light that stands in is enough.
+        for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0')):
+            _, warnings = self.seen(scene=open_scene)
+            self.assertIn("no lights", "".join(warnings))
+            self.assertNotIn("walls", "".join(warnings))
+
     def test_films_know_them(self):
         arguments = ["--checkpoint", "a.film", "--light", "camera", "--spp", "2", "--quiet"]
         self.assertEqual(self.render(ROOM, *arguments).code, DONE)
