@@ -242,10 +242,7 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
         swept = sweep(document, choice, placed.animations.span());
         bounds = scene.swept = swept->bounds;
     }
-    if (bounds.empty()) {
-        log.add(document.place(""), "the scene has no triangles to render; nothing is to be seen");
-        bounds = {Vec3{-1, -1, -1}, Vec3{1, 1, 1}};
-    }
+    if (bounds.empty()) bounds = {Vec3{-1, -1, -1}, Vec3{1, 1, 1}};
     set_view(document, placed.nodes, bounds, options.camera, scene, log);
     if (options.shutter) {
         const auto [open, close] = *options.shutter;

@@ -40,6 +40,9 @@ void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
 }  // namespace
 
 void complete(SceneDescription& scene) {
+    if (scene.shapes.empty() && scene.instances.empty() && scene.camera.medium < 0)
+        scene.warnings.push_back(
+            {{}, "the scene has no shapes; nothing but light from all around is to be seen"});
     if (scene.no_lights) add_default_lights(scene, scene.no_lights->where);
     if (is_framed(scene)) scene.no_camera->text += ": " + view_text(scene);
     for (std::optional<Warning>* missing : {&scene.no_camera, &scene.no_lights}) {

@@ -222,7 +222,7 @@ class GltfMaterials(CliTest):
             material = {"alphaMode": mode, "extensions": {"KHR_materials_pbrSpecularGlossiness": extension}}
             self.write("a.gltf", lit_square(material, v, l))
             told = self.run_program("info", "a.gltf")
-            self.assertEqual("no triangles" not in told.stdout, seen, told)
+            self.assertEqual("no shapes" not in told.stdout, seen, told)
 
 
 if __name__ == "__main__":

@@ -137,6 +137,13 @@ class Light(CliTest):
             self.assertIn("no lights", "".join(warnings))
             self.assertNotIn("walls", "".join(warnings))
 
+    def test_scenes_without_shapes_are_told(self):
+        sky = ROOM.split("Material")[0]
+        self.assertIn("the scene has no shapes", self.seen(scene=sky)[1][0])
+        fog = sky.replace("Camera", 'MakeNamedMedium "fog" "string type" "homogeneous"\nMediumInterface "" "fog"\nCamera', 1).replace('"path"', '"volpath"')
+        for seen in (ROOM, fog):
+            self.assertNotIn("no shapes", "".join(self.seen(scene=seen)[1]))
+
     def test_films_know_them(self):
         arguments = ["--checkpoint", "a.film", "--light", "camera", "--spp", "2", "--quiet"]
         self.assertEqual(self.render(ROOM, *arguments).code, DONE)

@@ -264,7 +264,6 @@ TEST(GltfGeometry, ReadsScenesWithoutTriangles) {
     for (const GltfFile& file : {spot, empty}) {
         const SceneDescription scene = read(file);
         EXPECT_TRUE(scene.shapes.empty() && scene.instances.empty());
-        EXPECT_TRUE(contains(all_warnings(scene), "no triangles to render"));
         EXPECT_TRUE(is_finite(scene.camera.camera_to_world.start().point({0, 0, 0})));
     }
 }
