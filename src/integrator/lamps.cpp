@@ -34,6 +34,13 @@ bool lets_light_pass(const MaterialDescription& material) {
            std::holds_alternative<UnlitMaterial>(material.value);
 }
 
+/// Whether a path goes straight through a surface, or nearly.
+bool is_clear(const MaterialDescription& material) {
+    return lets_light_pass(material) ||
+           std::holds_alternative<ThinDielectricMaterial>(material.value) ||
+           std::holds_alternative<DielectricMaterial>(material.value);
+}
+
 /// Follows a ray past surfaces that it does not see. `passed`: the place of the last back.
 bool follow(const SceneDescription& scene, const Geometry& geometry, Ray ray, SurfaceHit& hit,
             Vec3* passed = nullptr) {
@@ -103,12 +110,22 @@ class Lamps {
         return std::abs(dot(hit.ng, away)) / (distance * distance * distance);
     }
 
-    /// Whether a ray from a hit that is seen along `view` leaves the scene.
+    /// Whether a ray from a hit that is seen along `view` leaves the scene, through panes as well.
     bool escapes(const SurfaceHit& hit, Vec3 view, Vec3 direction) const {
         if (dot(hit.ng, view) * dot(hit.ng, direction) >= 0) return false;
         Ray shadow{Geometry::offset_origin(hit, direction), direction, hit.time};
         shadow.kind = RayKind::shadow;
-        return !geometry_.occluded(shadow);
+        SurfaceHit met;
+        for (int i = 0; i < kMostPassed; ++i) {
+            if (!geometry_.intersect(shadow, met)) return true;
+            const PlacedShape& shape = geometry_.shapes()[met.shape];
+            const MaterialId material = shape.description.material;
+            if (!shape.lets_light_pass &&
+                (material < 0 || !is_clear(scene_.materials[static_cast<size_t>(material)])))
+                return false;
+            shadow.origin = Geometry::offset_origin(met, direction);
+        }
+        return false;
     }
 
     /// Whether light from outside, the distant lights and the sky, reaches little of what is seen.

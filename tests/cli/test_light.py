@@ -131,8 +131,10 @@ class Light(CliTest):
         told = re.search('--light "(.*)"', warnings[-1])[1]
         again, _ = self.seen("--light", told, scene=dark)
         self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
-        # Outside, and where half of the room's ceiling is open, the light that stands in is enough.
-        for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0')):
+        # Outside, where half of the room is open, and where it is of glass, the light that stands in is enough.
+        ball = 'Material "diffuse"\nTranslate 1.5 0.45 1.5\nShape "sphere" "float radius" 0.9\n'
+        glass = re.sub('Material "diffuse" .*', 'Material "dielectric"', dark) + ball
+        for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0'), glass):
             _, warnings = self.seen(scene=open_scene)
             self.assertIn("no lights", "".join(warnings))
             self.assertNotIn("walls", "".join(warnings))
