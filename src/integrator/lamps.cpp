@@ -17,13 +17,13 @@ namespace covtrace {
 namespace {
 
 constexpr int kSide = 24;        // rays per side of the picture, or of all directions
-constexpr int kMostPassed = 64;  // backs that a ray passes
+constexpr int kMostPassed = 64;  // backs, or surfaces of glass, that a ray passes
 /// Value of a white surface in the direct light of all lamps, where that is more than in so large a
 /// share of what is seen. The rest, near the lamp, may be brighter.
 constexpr float kGoal = 0.6f, kBrighterThan = 0.75f;
 constexpr float kLeastLit = 0.1f;  // share of the rays by which a lamp has to be seen to light
-/// Share of what the camera sees that some light from outside must reach; a room with a window is
-/// lit, and so is what stands in its own shadow.
+/// Share of what the camera sees that some light from outside must reach, or a lamp stands there,
+/// too: as much as makes the program tell of a dark image (image/darkness.h, decision 0120).
 constexpr float kLeastReached = 0.5f;
 constexpr int kSkyRays = 8;  // per place that is seen
 
@@ -148,7 +148,7 @@ class Lamps {
                 return true;
         const Frame frame = Frame::from_z(face_forward(hit.ng, -view));
         for (int i = 0; i < kSkyRays; ++i) {
-            constexpr float kGolden = 0.61803399f;
+            constexpr float kGolden = 0.61803399f;  // spreads azimuths evenly
             const float turn = float(i) * kGolden;
             const Vec2 u{(float(i) + 0.5f) / kSkyRays, turn - std::floor(turn)};
             if (escapes(hit, view, frame.to_world(square_to_cosine_hemisphere(u)))) return true;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kMost = 16;
 
-/// The leaf of each place is the part that was told for it, and parts hold no more than asked.
+/// The leaf of each place is the part that was told for it, and each place is in one.
 void expect_places_in_their_parts(const std::vector<PlaceTree::Place>& places) {
     std::vector<uint32_t> order;
     std::vector<PlaceTree::Part> parts;
