@@ -3,11 +3,11 @@
 
 #include <array>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "core/transform.h"
-#include "gltf/accessor.h"
+#include "gltf/animated_properties.h"
+#include "gltf/channel.h"
 #include "gltf/document.h"
 
 namespace covtrace::gltf {
@@ -23,14 +23,14 @@ struct Pose {
 /// normalised.
 Matrix4 matrix_of(const Pose& pose);
 
-/// Animations of the file at once, on one time line in seconds. Where two move the same property of
-/// a node, the first one counts, with a warning.
+/// Animations of the file at once, on one time line in seconds. Where two move the same property,
+/// the first one counts, with a warning.
 class Animations {
   public:
-    /// Reads and checks all channels of these animations that move nodes.
+    /// Reads and checks all channels of these animations.
     Animations(const Document& document, const std::vector<size_t>& played, WarningLog& log);
 
-    bool empty() const { return channels_.empty(); }
+    bool empty() const { return channels_.empty() && properties_.empty(); }
     /// Time of the first and of the last key; there must be a channel.
     std::array<float, 2> span() const;
     /// Whether a channel places the node, morphs it, or both.
@@ -40,19 +40,15 @@ class Animations {
     /// Replaces the parts of `pose` that channels move by their values at `time`; beyond the first
     /// and last key these stay as there.
     void apply(int node, double time, Pose& pose) const;
+    /// The channels of all but the poses of nodes.
+    const AnimatedProperties& properties() const { return properties_; }
 
   private:
-    enum class Interpolation { step, linear, cubic_spline };
     enum class Path { translation, rotation, scale, weights };
-    struct Channel {
-        Path path = Path::translation;
-        Interpolation interpolation = Interpolation::linear;
-        Numbers times, values;
-        std::vector<double> at(double time) const;
-    };
     void read_channel(const Document& document, size_t animation, size_t channel, WarningLog& log);
 
     std::map<int, std::map<Path, Channel>> channels_;  ///< by node
+    AnimatedProperties properties_;
 };
 
 }  // namespace covtrace::gltf

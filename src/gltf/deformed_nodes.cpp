@@ -65,8 +65,8 @@ bool DeformedNodes::deforms(const PlacedNode& node) {
     const bool has_targets = std::any_of(primitives.begin(), primitives.end(),
                                          [](const auto& p) { return !p.targets.empty(); });
     return has_targets &&
-           (any(morph_weights(document_, placed_.animations, node.node, double(shutter_[0]))) ||
-            any(morph_weights(document_, placed_.animations, node.node, double(shutter_[1]))));
+           (any(morph_weights(document_, animations_, node.node, double(shutter_[0]))) ||
+            any(morph_weights(document_, animations_, node.node, double(shutter_[1]))));
 }
 
 std::vector<MovedMesh> DeformedNodes::meshes(const PlacedNode& node, size_t primitive,
@@ -77,7 +77,7 @@ std::vector<MovedMesh> DeformedNodes::meshes(const PlacedNode& node, size_t prim
     const JointMatrices& joints = n.skin >= 0 ? joints_of(n.skin, place) : kNone;
     const auto at_end = [&](size_t end) {
         const auto weights =
-            morph_weights(document_, placed_.animations, node.node, double(shutter_[end]));
+            morph_weights(document_, animations_, node.node, double(shutter_[end]));
         return geometry_.deformed(n.mesh, primitive, layout, weights, joints[end], place);
     };
     const TriangleMesh open = at_end(0), close = at_end(1);

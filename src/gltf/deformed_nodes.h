@@ -20,8 +20,14 @@ struct MovedMesh {
 class DeformedNodes {
   public:
     DeformedNodes(const Document& document, WarningLog& log, GeometryReader& geometry,
-                  const PlacedNodes& placed, std::array<float, 2> shutter)
-        : document_(document), log_(log), geometry_(geometry), placed_(placed), shutter_(shutter) {}
+                  const PlacedNodes& placed, const Animations& animations,
+                  std::array<float, 2> shutter)
+        : document_(document),
+          log_(log),
+          geometry_(geometry),
+          placed_(placed),
+          animations_(animations),
+          shutter_(shutter) {}
 
     /// Whether the node's mesh is deformed, by morph targets or a skin.
     bool deforms(const PlacedNode& node);
@@ -42,6 +48,7 @@ class DeformedNodes {
     WarningLog& log_;
     GeometryReader& geometry_;
     const PlacedNodes& placed_;
+    const Animations& animations_;
     const std::array<float, 2> shutter_;
     std::map<int, JointMatrices> skins_;
 };

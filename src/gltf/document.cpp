@@ -11,9 +11,10 @@
 #include <system_error>
 
 #include "core/hash.h"
+#include "gltf/animated_properties.h"
 #include "gltf/checked_json.h"
-#include "gltf/draco.h"
-#include "gltf/meshopt.h"
+#include "gltf/codecs/draco.h"
+#include "gltf/codecs/meshopt.h"
 #include "gltf/plain_json.h"
 #include "gltf/range_text.h"
 #include "scene/names.h"
@@ -228,7 +229,10 @@ Document document_of(std::string bytes, const std::string& name, const fs::path&
     if (bytes.size() > kLargestFile)
         throw Error(ErrorKind::limit, document.name + ": the file is larger than 4 GiB");
     document.bytes = bytes.size();
-    parse(document, checked_file(std::move(bytes), document.name), files);
+    const std::string file = checked_file(std::move(bytes), document.name);
+    document.properties =
+        json_of_properties(is_binary(file) ? json_chunk(file, name) : std::string_view(file));
+    parse(document, file, files);
     document.content_hash = files.content_hash();
     for (const fs::path& read : files.files()) document.files.insert(read);
     for (const tinygltf::Buffer& buffer : document.model.buffers)

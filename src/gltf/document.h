@@ -21,6 +21,7 @@ struct Document {
     std::filesystem::path folder;              ///< the file's own
     std::vector<std::filesystem::path> roots;  ///< folders that files may be read from
     tinygltf::Model model;
+    std::string properties;  ///< JSON of what KHR_animation_pointer may move of `model`
     uint64_t content_hash = 0;
     uint64_t bytes = 0;                             ///< of the file and its buffers
     Budget decoded;                                 ///< what codecs may still decode to

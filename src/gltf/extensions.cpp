@@ -15,7 +15,6 @@ struct LeftOut {
 constexpr std::array kLeftOut{
     LeftOut{"EXT_lights_ies", "its lamps shine alike in all directions"},
     LeftOut{"EXT_lights_image_based", "its light from all around is missing"},
-    LeftOut{"KHR_animation_pointer", "what it animates beside nodes rests"},
     LeftOut{"KHR_gaussian_splatting", "its splats are missing"},
     LeftOut{"KHR_materials_volume_scatter", "volumes absorb light but do not scatter it"},
     LeftOut{"KHR_texture_basisu", "the image for other readers is shown, where there is one"},

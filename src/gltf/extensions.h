@@ -13,6 +13,7 @@ constexpr bool is_supported(std::string_view extension) {
     for (const std::string_view name : {"EXT_mesh_gpu_instancing",
                                         "EXT_meshopt_compression",
                                         "EXT_texture_webp",
+                                        "KHR_animation_pointer",
                                         "KHR_draco_mesh_compression",
                                         "KHR_lights_punctual",
                                         "KHR_materials_anisotropy",

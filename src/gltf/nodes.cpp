@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "gltf/instancing.h"
 
@@ -30,17 +29,15 @@ bool is_visible(const tinygltf::Node& node) {
 
 class Placer {
   public:
-    Placer(const Document& document, const Choice& choice,
-           const std::optional<std::array<float, 2>>& shutter, WarningLog& log)
+    Placer(const Document& document, int scene, const Animations& animations,
+           const std::array<float, 2>& shutter, WarningLog& log)
         : document_(document),
+          animations_(animations),
           log_(log),
           shutter_(shutter),
-          scene_(choice.scene),
-          parents_(document.model.nodes.size(), kNone),
-          placed_{{}, {}, Animations(document, choice.animations, log)} {
+          scene_(scene),
+          parents_(document.model.nodes.size(), kNone) {
         placed_.worlds.resize(parents_.size());
-        if (!placed_.animations.empty() && !shutter)
-            log.add(document.place("animations"), at_rest(placed_.animations.span()));
         find_parents();
     }
 
@@ -170,14 +167,14 @@ class Placer {
         copy_checked(document_, node.translation, pose.translation, place + ".translation");
         copy_checked(document_, node.rotation, pose.rotation, place + ".rotation");
         copy_checked(document_, node.scale, pose.scale, place + ".scale");
-        placed_.animations.apply(index, time, pose);
+        animations_.apply(index, time, pose);
         return matrix_of(pose);
     }
 
     void visit(const Pending& pending, std::vector<Pending>& stack) {
-        const auto [t0, t1] = shutter_.value_or(std::array<float, 2>{0, 0});
+        const auto [t0, t1] = shutter_;
         const Matrix4 start = pending.start * local(pending.node, t0);
-        const bool rests = !placed_.animations.moves(pending.node) && pending.start == pending.end;
+        const bool rests = !animations_.moves(pending.node) && pending.start == pending.end;
         const Matrix4 end = rests ? start : pending.end * local(pending.node, t1);
         const auto index = static_cast<size_t>(pending.node);
         placed_.worlds[index] = {start, end};
@@ -208,18 +205,11 @@ class Placer {
         }
     }
 
-    static std::string at_rest(const std::array<float, 2>& span) {
-        std::ostringstream text;
-        text << "the scene is rendered at rest, at 0 seconds; it is animated from " << span[0]
-             << " to " << span[1]
-             << " seconds, of which a shutter from T0 to T1 seconds shows a part";
-        return text.str();
-    }
-
     const Document& document_;
+    const Animations& animations_;
     WarningLog& log_;
-    const std::optional<std::array<float, 2>> shutter_;
-    const int scene_;  ///< index, or -1 for all roots
+    const std::array<float, 2> shutter_;  ///< seconds
+    const int scene_;                     ///< index, or -1 for all roots
     std::vector<int> parents_;
     PlacedNodes placed_;
 };
@@ -246,9 +236,9 @@ std::vector<double> morph_weights(const Document& document, const Animations& an
     return values;
 }
 
-PlacedNodes place_nodes(const Document& document, const Choice& choice,
-                        const std::optional<std::array<float, 2>>& shutter, WarningLog& log) {
-    return Placer(document, choice, shutter, log).place();
+PlacedNodes place_nodes(const Document& document, int scene, const Animations& animations,
+                        const std::array<float, 2>& shutter, WarningLog& log) {
+    return Placer(document, scene, animations, shutter, log).place();
 }
 
 }  // namespace covtrace::gltf

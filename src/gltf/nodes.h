@@ -8,7 +8,6 @@
 
 #include "core/transform.h"
 #include "gltf/animation.h"
-#include "gltf/choice.h"
 #include "gltf/document.h"
 
 namespace covtrace::gltf {
@@ -26,21 +25,20 @@ struct PlacedNodes {
     std::vector<PlacedNode> nodes;  ///< parents before children, in the file's order
     std::vector<std::optional<WorldMatrices>>
         worlds;  ///< one for each of the document's nodes; none: not in the scene
-    Animations animations;
 };
 
 /// Weights of the morph targets of the node's mesh at a time; missing ones are 0.
 std::vector<double> morph_weights(const Document& document, const Animations& animations, int node,
                                   double time);
 
-/// The nodes of the chosen scene (all roots, where there are no scenes), as the chosen animations
+/// The nodes of a scene, by its index (-1: all roots, where there are no scenes), as the animations
 /// move them. A node that the scene lists beside one above it is placed once, by its parents; one
 /// whose parents are not in the scene by its own transform; both with a warning. Refuses nodes with
 /// two parents and cycles. Nodes that a scale of zero or KHR_node_visibility hides are left out of
 /// the placed ones; those whose mesh EXT_mesh_gpu_instancing copies are there once for each copy.
 ///
-/// `shutter`: both ends in seconds; none: at rest, as at time 0 of the animations.
-PlacedNodes place_nodes(const Document& document, const Choice& choice,
-                        const std::optional<std::array<float, 2>>& shutter, WarningLog& log);
+/// `shutter`: both ends in seconds.
+PlacedNodes place_nodes(const Document& document, int scene, const Animations& animations,
+                        const std::array<float, 2>& shutter, WarningLog& log);
 
 }  // namespace covtrace::gltf

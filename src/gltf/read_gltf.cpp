@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <sstream>
 
+#include "gltf/animation.h"
 #include "gltf/camera.h"
 #include "gltf/choice.h"
 #include "gltf/deformed_nodes.h"
@@ -26,15 +28,15 @@ namespace {
 class SceneAssembler {
   public:
     SceneAssembler(const Document& document, const PlacedNodes& placed,
-                   const std::optional<size_t>& variant, std::array<float, 2> shutter,
-                   SceneDescription& scene, WarningLog& log)
+                   const Animations& animations, const std::optional<size_t>& variant,
+                   std::array<float, 2> shutter, SceneDescription& scene, WarningLog& log)
         : document_(document),
           placed_(placed),
           variant_(variant),
           scene_(scene),
           log_(log),
           geometry_(document, log, mark_radii(document, placed)),
-          deformed_(document, log, geometry_, placed, shutter),
+          deformed_(document, log, geometry_, placed, animations, shutter),
           materials_(document, scene, log) {}
 
     void add() {
@@ -194,27 +196,41 @@ class SceneAssembler {
 struct Sweep {
     Bounds3 bounds;                        ///< SceneDescription::swept
     std::vector<LightDescription> lights;  ///< as they stand at the beginning
+    bool has_lamps = false;                ///< at any moment
 };
 
-Sweep sweep(const Document& document, const Choice& choice, const std::array<float, 2>& span) {
+/// Leaves the document as it is at the end of the animations.
+Sweep sweep(Document& document, const Choice& choice, const Animations& animations) {
     constexpr int kMoments = 9;
     constexpr float kExposure = 0.001f;  // seconds
+    const std::array<float, 2> span = animations.span();
     Sweep swept;
     for (int i = 0; i < kMoments; ++i) {
         const float time = span[0] + (span[1] - span[0]) * float(i) / float(kMoments - 1);
         const std::array<float, 2> shutter{time, time + kExposure};
         SceneDescription moment;
         WarningLog unheard;  // the frame itself tells what is wrong with the file
-        const PlacedNodes placed = place_nodes(document, choice, shutter, unheard);
-        SceneAssembler assembler(document, placed, choice.variant, shutter, moment, unheard);
+        animations.properties().apply(double(time), document);
+        const PlacedNodes placed =
+            place_nodes(document, choice.scene, animations, shutter, unheard);
+        SceneAssembler assembler(document, placed, animations, choice.variant, shutter, moment,
+                                 unheard);
         assembler.add();
         swept.bounds.extend(assembler.bounds());
+        swept.has_lamps = swept.has_lamps || assembler.has_lamps();
         if (i == 0) swept.lights = moment.lights;
     }
     return swept;
 }
 
-SceneDescription read(const Document& document, const ReadOptions& options, WarningLog& log) {
+std::string at_rest(const std::array<float, 2>& span) {
+    std::ostringstream text;
+    text << "the scene is rendered at rest, at 0 seconds; it is animated from " << span[0] << " to "
+         << span[1] << " seconds, of which a shutter from T0 to T1 seconds shows a part";
+    return text.str();
+}
+
+SceneDescription read(Document document, const ReadOptions& options, WarningLog& log) {
     SceneDescription scene;
     scene.name = std::filesystem::path(document.name).stem().string();
     scene.up = Vec3{0, 1, 0};
@@ -230,18 +246,21 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
         warn_of_left_out(document, document.model.scenes[index].extensions,
                          element("scenes", index), log);
     }
-    const PlacedNodes placed = place_nodes(document, choice, options.shutter, log);
-    SceneAssembler assembler(document, placed, choice.variant,
-                             options.shutter.value_or(std::array<float, 2>{0, 0}), scene, log);
-    assembler.add();
-    Bounds3 bounds = assembler.bounds();
-    if (options.is_frame && placed.animations.empty())
+    const Animations animations(document, choice.animations, log);
+    if (!animations.empty() && !options.shutter)
+        log.add(document.place("animations"), at_rest(animations.span()));
+    if (options.is_frame && animations.empty())
         log.add(document.place("animations"), "nothing is animated: all frames are alike");
     std::optional<Sweep> swept;
-    if (options.is_frame && !placed.animations.empty()) {
-        swept = sweep(document, choice, placed.animations.span());
-        bounds = scene.swept = swept->bounds;
-    }
+    if (options.is_frame && !animations.empty()) swept = sweep(document, choice, animations);
+    const std::array<float, 2> shutter = options.shutter.value_or(std::array<float, 2>{0, 0});
+    // Whatever moves beside nodes does not blur: the middle of the exposure stands for all of it.
+    animations.properties().apply((double(shutter[0]) + double(shutter[1])) / 2, document);
+    const PlacedNodes placed = place_nodes(document, choice.scene, animations, shutter, log);
+    SceneAssembler assembler(document, placed, animations, choice.variant, shutter, scene, log);
+    assembler.add();
+    Bounds3 bounds = assembler.bounds();
+    if (swept) bounds = scene.swept = swept->bounds;
     if (bounds.empty()) bounds = {Vec3{-1, -1, -1}, Vec3{1, 1, 1}};
     set_view(document, placed.nodes, bounds, options.camera, scene, log);
     if (options.shutter) {
@@ -253,7 +272,7 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
         scene.film.iso = 100 / (close - open);
     }
     scale_lights(document, bounds, swept ? swept->lights : scene.lights, scene, log);
-    if (!assembler.has_lamps())
+    if (!assembler.has_lamps() && !(swept && swept->has_lamps))
         scene.no_lights = {document.place(""),
                            "the scene has no lights (KHR_lights_punctual, or an emissive strength "
                            "above 1); a grey sky and a key light from the upper left of the camera "

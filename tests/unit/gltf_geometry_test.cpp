@@ -244,13 +244,13 @@ TEST(GltfGeometry, LeavesOutAnimationsOfOtherThanNodes) {
     GltfFile file = square_file();
     const int times = file.add_floats({0, 1}, "SCALAR", 1);
     const int values = file.add_floats({0, 1}, "SCALAR", 1);
-    const json pointer = {{"KHR_animation_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}};
+    const json pointer = {{"ACME_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}};
     file.root["animations"] = {
         {{"channels",
           {{{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", pointer}}}}}},
          {"samplers", {{{"input", times}, {"output", values}}}}}};
     EXPECT_TRUE(contains(all_warnings(read(file)),
-                         "animations[0].channels[0]: extension KHR_animation_pointer is left out"));
+                         "animations[0].channels[0]: extension ACME_pointer is left out"));
     // One that names neither a node nor an extension is to be ignored.
     file.root["animations"][0]["channels"][0]["target"] = {{"path", "translation"}};
     EXPECT_FALSE(contains(all_warnings(read(file)), "animations[0]"));

@@ -39,14 +39,14 @@ TEST(GltfLeftOut, ExtensionsOutsideOfMaterialsAreTold) {
     file.root["scenes"] = {
         {{"nodes", {0}}, {"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}};
     const int time = file.add_floats({0}, "SCALAR", 1), value = file.add_floats({1}, "SCALAR", 1);
-    const json pointer = {{"KHR_animation_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}};
+    const json pointer = {{"ACME_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}};
     file.root["animations"] = {
         {{"samplers", {{{"input", time}, {"output", value}}}},
          {"channels",
           {{{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", pointer}}}}}}}};
     const auto scene = read(file);
     for (const char* name :
-         {"ACME_fur", "EXT_lights_ies", "EXT_lights_image_based", "KHR_animation_pointer"})
+         {"ACME_fur", "EXT_lights_ies", "EXT_lights_image_based", "ACME_pointer"})
         EXPECT_EQ(warnings_with(scene, std::string("extension ") + name + " is left out: ").size(),
                   1u)
             << name << "\n"

@@ -1,4 +1,4 @@
-#include "gltf/meshopt.h"
+#include "gltf/codecs/meshopt.h"
 
 #include <meshoptimizer.h>
 
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/memory_limit.h"
-#include "gltf/decoded.h"
+#include "gltf/codecs/decoded.h"
 
 namespace covtrace::gltf {
 namespace {

@@ -1,4 +1,4 @@
-#include "gltf/decoded.h"
+#include "gltf/codecs/decoded.h"
 
 namespace covtrace::gltf {
 

@@ -1,11 +1,11 @@
-#include "gltf/draco.h"
+#include "gltf/codecs/draco.h"
 
 #include <cstring>
 #include <map>
 #include <tuple>
 
-#include "gltf/decoded.h"
-#include "gltf/draco_mesh.h"
+#include "gltf/codecs/decoded.h"
+#include "gltf/codecs/draco_mesh.h"
 
 namespace covtrace::gltf {
 namespace {

@@ -1,4 +1,4 @@
-#include "gltf/draco_mesh.h"
+#include "gltf/codecs/draco_mesh.h"
 
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
 #include <draco/compression/mesh/mesh_sequential_decoder.h>

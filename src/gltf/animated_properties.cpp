@@ -1,0 +1,156 @@
+#include "gltf/animated_properties.h"
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+namespace covtrace::gltf {
+namespace {
+
+using nlohmann::json;
+using Path = std::vector<std::string>;
+
+constexpr const char* kLights = "KHR_lights_punctual";
+constexpr const char* kVisibility = "KHR_node_visibility";
+
+/// Whether a path is {list, an index of it, and a property}.
+bool is_element(const Path& path, const char* list, size_t count) {
+    return path.size() >= 3 && path[0] == list && pointer_index(path[1], count);
+}
+
+bool is_light(const Document& document, const Path& path) {
+    return path.size() >= 5 && path[0] == "extensions" && path[1] == kLights &&
+           path[2] == "lights" && pointer_index(path[3], document.model.lights.size());
+}
+
+bool is_weights(const Document& document, const Path& path) {
+    return path.size() == 3 && is_element(path, "meshes", document.model.meshes.size()) &&
+           path[2] == "weights";
+}
+
+bool is_visibility(const Document& document, const Path& path) {
+    return path.size() == 5 && is_element(path, "nodes", document.model.nodes.size()) &&
+           path[2] == "extensions" && path[3] == kVisibility && path[4] == "visible";
+}
+
+bool is_true(const std::vector<double>& value) {
+    return value[0] >= 0.5;  // outputs of animations are numbers
+}
+
+/// Sets the value that a path names; objects that are not there are made. Leaves what is not
+/// reached through objects and elements of lists.
+void set(json& root, const Path& path, const std::vector<double>& value) {
+    json* place = &root;
+    for (const std::string& part : path) {
+        if (place->is_array()) {
+            const auto index = pointer_index(part, place->size());
+            if (!index) return;
+            place = &(*place)[*index];
+        } else if (place->is_object() || place->is_null()) {
+            place = &(*place)[part];
+        } else {
+            return;
+        }
+    }
+    if (place->is_boolean())
+        *place = is_true(value);
+    else if (value.size() == 1 && !place->is_array())
+        *place = value[0];
+    else
+        *place = value;
+}
+
+/// Reads the JSON of the properties into the document, by the library that has read the whole.
+void read_properties(const std::string& text, Document& document) {
+    tinygltf::TinyGLTF library;
+    tinygltf::Model read;
+    std::string error, warning;
+    const bool parsed = library.LoadASCIIFromString(&read, &error, &warning, text.data(),
+                                                    static_cast<unsigned>(text.size()), "");
+    if (!parsed || !error.empty() || read.materials.size() != document.model.materials.size() ||
+        read.cameras.size() != document.model.cameras.size() ||
+        read.lights.size() != document.model.lights.size())
+        document.refuse("animations",
+                        "KHR_animation_pointer gives a material, camera or light a value that it "
+                        "cannot have");
+    document.model.materials = std::move(read.materials);
+    document.model.cameras = std::move(read.cameras);
+    document.model.lights = std::move(read.lights);
+}
+
+}  // namespace
+
+std::vector<std::string> pointer_path(const std::string& pointer) {
+    Path path;
+    if (!pointer.starts_with('/')) return path;
+    for (size_t i = 0; i < pointer.size(); ++i) {
+        const bool is_escaped = pointer[i] == '~' && i + 1 < pointer.size();
+        if (pointer[i] == '/') {
+            path.emplace_back();
+        } else if (is_escaped && (pointer[i + 1] == '0' || pointer[i + 1] == '1')) {
+            path.back() += pointer[++i] == '0' ? '~' : '/';
+        } else {
+            path.back() += pointer[i];
+        }
+    }
+    return path;
+}
+
+std::optional<size_t> pointer_index(const std::string& part, size_t count) {
+    size_t index = 0;
+    const char* end = part.data() + part.size();
+    const auto [rest, error] = std::from_chars(part.data(), end, index);
+    if (error != std::errc() || rest != end || index >= count) return std::nullopt;
+    return index;
+}
+
+std::string json_of_properties(std::string_view text) {
+    if (text.find("KHR_animation_pointer") == text.npos) return {};
+    const json root = json::parse(text.begin(), text.end(), nullptr, false);
+    json properties = {{"asset", {{"version", "2.0"}}}};
+    for (const char* list : {"materials", "cameras"})
+        if (root.is_object() && root.contains(list)) properties[list] = root[list];
+    const json::json_pointer lights(std::string("/extensions/") + kLights);
+    if (root.is_object() && root.contains(lights)) properties[lights] = root[lights];
+    return properties.dump();
+}
+
+bool AnimatedProperties::has(const Document& document, const Path& path) {
+    constexpr size_t kDeepest = 32;  // more parts than extensions of extensions have
+    if (path.size() > kDeepest) return false;
+    return is_element(path, "materials", document.model.materials.size()) ||
+           is_element(path, "cameras", document.model.cameras.size()) || is_light(document, path) ||
+           is_weights(document, path) || is_visibility(document, path);
+}
+
+bool AnimatedProperties::add(const Path& path, Channel channel) {
+    return channels_.emplace(path, std::move(channel)).second;
+}
+
+std::array<float, 2> AnimatedProperties::span() const {
+    std::array<float, 2> span = channels_.begin()->second.span();
+    for (const auto& [path, channel] : channels_) {
+        span[0] = std::min(span[0], channel.span()[0]);
+        span[1] = std::max(span[1], channel.span()[1]);
+    }
+    return span;
+}
+
+void AnimatedProperties::apply(double time, Document& document) const {
+    if (channels_.empty()) return;
+    json properties = json::parse(document.properties);
+    for (const auto& [path, channel] : channels_) {
+        const std::vector<double> value = channel.at(time);
+        const size_t index = pointer_index(path[1], SIZE_MAX).value_or(0);
+        if (is_weights(document, path))
+            document.model.meshes[index].weights = value;
+        else if (is_visibility(document, path))
+            document.model.nodes[index].extensions[kVisibility] = tinygltf::Value(
+                tinygltf::Value::Object{{"visible", tinygltf::Value(is_true(value))}});
+        else
+            set(properties, path, value);
+    }
+    read_properties(properties.dump(), document);
+}
+
+}  // namespace covtrace::gltf
