@@ -38,6 +38,7 @@ CoatedDiffuseMaterial MaterialBuilder::dielectric(Widths widths) const {
     m.coat_weight = border_.weight;
     m.coat_dims_base = border_.dims_base;
     m.film = film_;
+    m.multiple_scattering = border_.normal_reflectance < 0 && border_.weight < 0 && !film_;
     return m;
 }
 
@@ -47,6 +48,7 @@ ConductorMaterial MaterialBuilder::metal() const {
     m.u_roughness = widths_.u;
     m.v_roughness = widths_.v;
     m.remap_roughness = false;
+    m.multiple_scattering = true;
     m.film = film_;
     return m;
 }
@@ -78,6 +80,7 @@ MaterialId MaterialBuilder::glass() {
     m.u_roughness = widths_.u;
     m.v_roughness = widths_.v;
     m.remap_roughness = false;
+    m.multiple_scattering = true;
     m.transmittance = base_;
     return add(m);
 }

@@ -3,7 +3,8 @@
     COVTRACE=build/release/covtrace blender --background --factory-startup -noaudio --python tests/blender/gltf_against_cycles.py -- \\
         [-o FOLDER] [--samples N] [FILE.glb ...]
 
-Without files: four scenes, which Blender makes and exports. Each .glb is imported into an empty Blender and rendered by
+Or with a Python that has bpy in the place of Blender. Without files: scenes that Blender makes and exports, four of them, and
+two of extensions since Blender 4.0. Each .glb is imported into an empty Blender and rendered by
 Cycles, and rendered by covtrace, uniform and with the default method; covtrace compares. Both pictures and a report per
 scene stay in FOLDER.
 """
@@ -26,11 +27,17 @@ WIDTH, HEIGHT = 320, 180
 COVTRACE = os.environ.get("COVTRACE", "covtrace")
 
 
+RENAMED = {"Specular": "Specular IOR Level", "Emission": "Emission Color"}  # since Blender 4.0
+
+
 def material(name, **inputs):
     m = bpy.data.materials.new(name)
     m.use_nodes = True
     for key, value in inputs.items():
-        m.node_tree.nodes["Principled BSDF"].inputs[key.replace("_", " ")].default_value = value
+        socket = key.replace("_", " ")
+        if bpy.app.version >= (4, 0, 0):
+            socket = RENAMED.get(socket, socket)
+        m.node_tree.nodes["Principled BSDF"].inputs[socket].default_value = value
     return m
 
 
@@ -101,10 +108,10 @@ def principled():
 
 def textures():
     """Base colours and normals from images."""
-    size = 64
-    checks = [((0.8, 0.7, 0.2, 1) if (i % size // 8 + i // size // 8) % 2 else (0.1, 0.2, 0.4, 1)) for i in range(size * size)]
+    size = 256  # so fine that it hardly counts that Cycles interpolates bytes before it decodes them
+    checks = [((0.8, 0.7, 0.2, 1) if (i % size // 32 + i // size // 32) % 2 else (0.1, 0.2, 0.4, 1)) for i in range(size * size)]
     stage(textured("floor", checks, size))
-    waves = [(0.5 + 0.35 * math.sin(2 * math.pi * (i % size) / 16), 0.5, 0.93, 1) for i in range(size * size)]
+    waves = [(0.5 + 0.35 * math.sin(8 * math.pi * (i % size) / size), 0.5, 0.93, 1) for i in range(size * size)]
     bumpy = material("bumpy", Base_Color=(0.6, 0.6, 0.6, 1), Roughness=0.4)
     tree = bumpy.node_tree
     node, normal = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeNormalMap")
@@ -126,9 +133,45 @@ def emitters():
             material(f"lamp{x}", Base_Color=(0, 0, 0, 1), Specular=0.0, Emission=colour, Emission_Strength=12.0))
 
 
+def layers():
+    """Clear coats, sheen, tinted borders, and a coated metal."""
+    stage(material("floor", Base_Color=(0.4, 0.4, 0.4, 1), Roughness=0.7))
+    kinds = [dict(Base_Color=(0.6, 0.05, 0.05, 1), Roughness=0.6, Coat_Weight=1.0, Coat_Roughness=0.1),
+             dict(Base_Color=(0.1, 0.1, 0.3, 1), Roughness=0.8, Sheen_Weight=1.0, Sheen_Roughness=0.4, Specular=0.0),
+             dict(Base_Color=(0.05, 0.05, 0.05, 1), Roughness=0.4, Specular_Tint=(1.0, 0.6, 0.2, 1), IOR=1.9),
+             dict(Base_Color=(0.9, 0.9, 0.9, 1), Metallic=1.0, Roughness=0.5, Coat_Weight=1.0, Coat_Roughness=0.05)]
+    for i, kind in enumerate(kinds):
+        ball(material(f"kind{i}", **kind), 1.2 * (i - 1.5), 0)
+    lamps()
+
+
+def glass():
+    """Bodies that refract and absorb, clear and rough."""
+    stage(material("floor", Base_Color=(0.5, 0.5, 0.5, 1), Specular=0.0, Roughness=0.3))
+    group = bpy.data.node_groups.new("glTF Material Output", "ShaderNodeTree")
+    group.interface.new_socket("Thickness", in_out="INPUT", socket_type="NodeSocketFloat")
+    for i, (ior, roughness) in enumerate(((1.33, 0.0), (1.5, 0.0), (1.5, 0.4), (1.8, 0.2))):
+        m = material(f"glass{i}", Base_Color=(1, 1, 1, 1), Roughness=roughness, Transmission_Weight=1.0, IOR=ior)
+        nodes, links = m.node_tree.nodes, m.node_tree.links
+        thickness, absorption = nodes.new("ShaderNodeGroup"), nodes.new("ShaderNodeVolumeAbsorption")
+        thickness.node_tree = group
+        thickness.inputs["Thickness"].default_value = 1
+        absorption.inputs["Color"].default_value = (0.8, 0.5, 0.3, 1)
+        absorption.inputs["Density"].default_value = 0.5
+        links.new(absorption.outputs["Volume"], nodes["Material Output"].inputs["Volume"])
+        ball(m, 1.2 * (i - 1.5), 0)
+    for x, colour in ((-2, (1, 0.8, 0.6, 1)), (2, (0.6, 0.8, 1, 1))):
+        bpy.ops.mesh.primitive_plane_add(size=3, location=(x, 0, 4))
+        bpy.context.object.data.materials.append(
+            material(f"lamp{x}", Base_Color=(0, 0, 0, 1), Specular=0.0, Emission=colour, Emission_Strength=6.0))
+
+
 def made(folder):
     files = []
-    for scene in (matt, principled, textures, emitters):
+    scenes = [matt, principled, textures, emitters]
+    if bpy.app.version >= (4, 0, 0):
+        scenes += [layers, glass]
+    for scene in scenes:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         scene()
         file = folder / f"{scene.__name__}.glb"
@@ -137,14 +180,29 @@ def made(folder):
     return files
 
 
+def absorb_as_said():
+    """Gives volumes the coefficients of KHR_materials_volume, -log(colour) / distance: importer and exporter have 1 - colour there."""
+    for m in bpy.data.materials:
+        for node in m.node_tree.nodes if m.use_nodes else ():
+            if node.type == "VOLUME_ABSORPTION":
+                colour, density = node.inputs["Color"], node.inputs["Density"]
+                sigma = [-math.log(c) * density.default_value for c in colour.default_value[:3]]
+                density.default_value = max(sigma)
+                colour.default_value = [1 - s / max(sigma) for s in sigma] + [1]
+
+
 def by_cycles(file, out, samples):
     """Renders the file as Blender imports it; its own camera, where it has one, must be the scene's."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=str(file))
     scene = bpy.context.scene
+    absorb_as_said()
     scene.camera = next(o for o in scene.objects if o.type == "CAMERA")
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.cycles.sample_clamp_indirect, scene.cycles.blur_glossy = 0, 0  # which take light from caustics
+    for bounces in ("diffuse", "glossy", "transmission", "max"):
+        setattr(scene.cycles, f"{bounces}_bounces", 12)
     scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = samples, False, False
     scene.render.film_transparent = False
     settings = scene.render.image_settings
