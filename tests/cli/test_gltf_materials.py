@@ -90,7 +90,7 @@ def later_reflections(f0, alpha, v):
 
 
 def metal(f0, alpha_t, alpha_b, tangent, v, l):
-    """What a metal of this colour at the normal shows; anisotropic ones have the later reflections of their mean square roughness."""
+    """The pixel of a metal of this colour at the normal; anisotropic ones have the later reflections of their mean square roughness."""
     once = ggx(v, l, alpha_t, alpha_b, tangent) * l[2]
     mean = math.sqrt((alpha_t**2 + alpha_b**2) / 2)
     return [f * once * later_reflections(c, mean, v) for c, f in zip(f0, schlick(f0, 1, v, l))]
