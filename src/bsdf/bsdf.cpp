@@ -27,15 +27,6 @@ float pdf(const UnlitBsdf&, Vec3, Vec3) {
 LobeShares lobe_shares(const UnlitBsdf&, Vec3, Vec3, Rgb) {
     return {};
 }
-Rgb eval(const ThinDielectricBsdf&, Vec3, Vec3) {
-    return {};
-}
-float pdf(const ThinDielectricBsdf&, Vec3, Vec3) {
-    return 0;
-}
-LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3, Rgb) {
-    return {};
-}
 
 /// Value and density of models whose two computations share nothing.
 template <typename Model>
@@ -64,9 +55,6 @@ bool is_specular(const InterfaceBsdf&) {
 bool is_specular(const UnlitBsdf&) {
     return true;
 }
-bool is_specular(const ThinDielectricBsdf&) {
-    return true;
-}
 bool is_specular(const ConductorBsdf& b) {
     return b.alpha_x == 0 && b.alpha_y == 0;
 }
@@ -86,9 +74,6 @@ Rgb albedo(const InterfaceBsdf&, Vec3) {
 Rgb albedo(const UnlitBsdf& b, Vec3) {
     return {clamp01(b.colour.r), clamp01(b.colour.g), clamp01(b.colour.b)};
 }
-Rgb albedo(const ThinDielectricBsdf& b, Vec3) {
-    return b.transmittance;
-}
 
 }  // namespace
 
@@ -102,15 +87,6 @@ std::optional<BsdfSample> sample(const InterfaceBsdf&, Vec3 wo, float, Vec2) {
 
 std::optional<BsdfSample> sample(const UnlitBsdf&, Vec3 wo, float, Vec2) {
     return BsdfSample{-wo, Rgb(1), 1, LobeKind::specular_transmission};
-}
-
-std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2) {
-    // The reflectance is a geometric series, of the light that goes to and fro between both faces.
-    float r = fresnel_dielectric(std::abs(wo.z), b.eta).reflectance;
-    if (r < 1) r += sqr(1 - r) * r / (1 - sqr(r));
-    if (u_lobe < r)
-        return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1), r, LobeKind::specular_reflection};
-    return BsdfSample{-wo, b.transmittance, 1 - r, LobeKind::specular_transmission};
 }
 
 BsdfValue eval_and_pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
@@ -149,6 +125,7 @@ bool has_sharp_lobe(const Bsdf& bsdf) {
     if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
         return layered->coat.weight > 0 || has_sharp_lobe(base_of(*layered));
     if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf)) return !body->is_left;
+    if (const auto* pane = std::get_if<ThinDielectricBsdf>(&bsdf)) return !is_specular(*pane);
     return std::holds_alternative<ConductorBsdf>(bsdf) ||
            std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
            std::holds_alternative<DielectricBsdf>(bsdf) ||
@@ -172,9 +149,8 @@ float sharp_lobe_roughness(const Bsdf& bsdf) {
         [&](const auto& b) {
             if constexpr (requires { b.alpha_x; }) return larger(b);
             using Model = std::decay_t<decltype(b)>;
-            constexpr bool passes = std::is_same_v<Model, ThinDielectricBsdf> ||
-                                    std::is_same_v<Model, InterfaceBsdf> ||
-                                    std::is_same_v<Model, UnlitBsdf>;
+            constexpr bool passes =
+                std::is_same_v<Model, InterfaceBsdf> || std::is_same_v<Model, UnlitBsdf>;
             return passes ? 0.0f : std::numeric_limits<float>::infinity();
         },
         bsdf);

@@ -66,6 +66,9 @@ struct LobeShare {
     Vec3 normal{0, 0, 1};
     /// Border of a metal that has no index; none: `border_eta` tells.
     std::optional<SchlickMetal<float>> border_metal = {};
+    /// Whether both faces of a pane reflect together, and what passes them leaves by the same lobe
+    /// as what they reflect, mirrored to the other side.
+    bool is_pane = false;
     /// Whether a Fresnel factor belongs to the lobe.
     bool has_border() const { return border_eta > 0 || border_metal; }
 };
@@ -159,10 +162,14 @@ struct CoatedConductorBsdf {
     /// Part of the seed of `eval`'s walks: equal pairs have equal walks where this is the same.
     uint32_t place = 0;
 };
-/// A pane without thickness; both faces' reflections together.
+/// A pane without thickness; both faces' reflections together. See thin_dielectric.cpp.
 struct ThinDielectricBsdf {
     float eta = 1.5f;
-    Rgb transmittance{1};  ///< multiplies what passes both faces
+    Rgb transmittance{1};            ///< multiplies what passes both faces
+    float alpha_x = 0, alpha_y = 0;  ///< 0, 0: clear
+    /// ConductorBsdf::white of a rough pane.
+    const CoatTable* white = nullptr;
+    float table_row = 0;  ///< of `white`, for the mean roughness
 };
 /// The border between media, which lets everything pass.
 struct InterfaceBsdf {};

@@ -37,8 +37,9 @@ S border_reflectance(const LobeShare& lobe, const S& cos_i) {
             if (lobe.border_k > 0)
                 return C(conductor_reflectance(c, lobe.border_eta, lobe.border_k));
             const C cos2_t = 1 - (1 - c * c) / (lobe.border_eta * lobe.border_eta);
-            return cos2_t > 0.0f ? dielectric_reflectance(c, C(sqrt(cos2_t)), lobe.border_eta)
-                                 : C(1.0f);
+            if (!(cos2_t > 0.0f)) return C(1.0f);
+            const C r = dielectric_reflectance(c, C(sqrt(cos2_t)), lobe.border_eta);
+            return lobe.is_pane ? C(2 * r / (1 + r)) : r;
         },
         cos_i);
 }
@@ -82,7 +83,9 @@ auto lobe_function(const LobeShare& lobe, O wo, I wi) {
                  cos_i);
     }
     const Ggx ggx{lobe.alpha_x, lobe.alpha_y};
-    const bool reflects = lobe.kind == LobeKind::glossy_reflection;
+    const bool passes_pane = lobe.is_pane && lobe.kind == LobeKind::glossy_transmission;
+    if (passes_pane) wi.z = -wi.z;
+    const bool reflects = lobe.kind == LobeKind::glossy_reflection || passes_pane;
     const auto half = wo + (reflects ? 1.0f : lobe.eta) * wi;
     const S half_length2 = dot(half, half);
     if (!(half_length2 > 0.0f) || reflects != (wi.z > 0.0f)) return S(0.0f);
@@ -91,7 +94,8 @@ auto lobe_function(const LobeShare& lobe, O wo, I wi) {
     if (!(cos_o > 0.0f) || reflects != (cos_i > 0.0f)) return S(0.0f);
     const S fresnel = border_reflectance(lobe, cos_o);
     const S d = ggx.d_along(half, half_length2);
-    if (reflects) return S(0.25f * fresnel * d * ggx.g2_over_cos_o(wo, wi));
+    if (reflects)
+        return S(0.25f * (passes_pane ? 1 - fresnel : fresnel) * d * ggx.g2_over_cos_o(wo, wi));
     I mirrored = wi;
     mirrored.z = -wi.z;
     return S((1 - fresnel) * d * ggx.g2_over_cos_o(wo, mirrored) * cos_o * -cos_i / half_length2);

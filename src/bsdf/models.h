@@ -1,8 +1,8 @@
 /// The models behind bsdf.h, one overload set each; bsdf.cpp chooses among them.
 ///
 /// Functions behave as described in bsdf.h. All models but the dielectric look the same from both
-/// sides. The thin dielectric, the interface and the unlit surface are specular and have only
-/// `sample` here; their other overloads, constants all of them, are in bsdf.cpp.
+/// sides. The interface and the unlit surface are specular and have only `sample` here; their other
+/// overloads, constants all of them, are in bsdf.cpp.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -70,7 +70,13 @@ LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value
 bool is_specular(const CoatedConductorBsdf& b);
 Rgb albedo(const CoatedConductorBsdf& b, Vec3 wo);
 
+Rgb eval(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+bool is_specular(const ThinDielectricBsdf& b);
+Rgb albedo(const ThinDielectricBsdf& b, Vec3 wo);
 
 std::optional<BsdfSample> sample(const InterfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 std::optional<BsdfSample> sample(const UnlitBsdf& b, Vec3 wo, float u_lobe, Vec2 u);

@@ -22,4 +22,10 @@ DielectricBsdf with_multiple_scattering(DielectricBsdf glass, const CoatTable& f
     return glass;
 }
 
+ThinDielectricBsdf with_multiple_scattering(ThinDielectricBsdf pane, const CoatTable& white) {
+    pane.white = &white;
+    pane.table_row = CoatTable::row_of(pane.alpha_x, pane.alpha_y);
+    return pane;
+}
+
 }  // namespace covtrace

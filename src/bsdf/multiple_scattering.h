@@ -37,12 +37,19 @@ ConductorBsdf with_multiple_scattering(ConductorBsdf metal, const CoatTable& whi
 DielectricBsdf with_multiple_scattering(DielectricBsdf glass, const CoatTable& from_outside,
                                         const CoatTable& from_inside);
 
+/// The rough pane with its later reflections and transmissions, by the gain 1 / E of glass.
+ThinDielectricBsdf with_multiple_scattering(ThinDielectricBsdf pane, const CoatTable& white);
+
 /// Factor on the value of a metal's pairs for wo with the cosine `cos_o` > 0; 1 without later
 /// reflections.
 inline Rgb gain(const ConductorBsdf& b, float cos_o) {
     if (!b.white) return Rgb(1);
     const float kept = b.white->shares(b.table_row, cos_o).reflection;
     return Rgb(1) + b.regained * ((1 - kept) / kept);
+}
+/// The same of a rough pane, from either side.
+inline float gain(const ThinDielectricBsdf& b, float cos_o) {
+    return b.white ? 1 / b.white->shares(b.table_row, cos_o).reflection : 1;
 }
 /// The same of rough glass, from either side.
 inline float gain(const DielectricBsdf& b, Vec3 wo) {

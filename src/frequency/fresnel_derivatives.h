@@ -9,8 +9,8 @@
 
 namespace covtrace {
 
-/// Reflectance of the border of `lobe` as a function of the cosine, with derivatives at `c` in (0,
-/// 1].
+/// Reflectance R of the border of `lobe` as a function of the cosine, with derivatives at `c` in
+/// (0, 1]; of a pane's two faces 2R/(1 + R).
 ///
 /// Dielectric borders of the index e: with w = sqrt(e^2 - 1 + c^2), w' = c/w,
 ///
@@ -28,8 +28,12 @@ inline covariance::Taylor<double> reflectance_at(const LobeShare& lobe, double c
     const double rs = -excess * q * q, rs1 = -2 * rs * i, rs2 = (rs * c * i - rs1 * w) * 2 * i * i;
     const double rp = (e2 * c - w) * p, rp1 = 2 * e2 * excess * i * p * p,
                  rp2 = -rp1 * (c * i * i + 2 * p * (e2 + c * i));
-    return {0.5 * (rs * rs + rp * rp), rs * rs1 + rp * rp1,
-            rs1 * rs1 + rs * rs2 + rp1 * rp1 + rp * rp2};
+    const covariance::Taylor<double> one{0.5 * (rs * rs + rp * rp), rs * rs1 + rp * rp1,
+                                         rs1 * rs1 + rs * rs2 + rp1 * rp1 + rp * rp2};
+    if (!lobe.is_pane) return one;
+    const double j = 1 / (1 + one.value), slope = 2 * j * j;
+    return {2 * one.value * j, slope * one.first,
+            slope * (one.second - 2 * j * one.first * one.first)};
 }
 
 }  // namespace covtrace

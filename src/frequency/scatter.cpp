@@ -107,7 +107,27 @@ LightField reflect_round(const LightField& entered, const ScatterPoint& p, const
 }
 
 LightField through_glossy(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
+                          BrdfCovariance rule);
+
+/// Lets light pass a rough pane: mirrored at its plane it is reflected by the lobe. The share that
+/// passes a facet, 1 - 2R/(1 + R), is nearly even and has no window.
+LightField through_pane(const LightField& entered, const ScatterPoint& p, LobeShare lobe,
+                        BrdfCovariance rule) {
+    lobe.kind = LobeKind::glossy_reflection;
+    lobe.border_eta = 0;
+    const cov::Vec3<double>& n = p.facing().n;
+    const auto mirrored = [&n](const cov::Vec3<double>& v) -> cov::Vec3<double> {
+        return v - 2 * cov::dot(v, n) * n;
+    };
+    const cov::Frame<double>& f = entered.frame;
+    return through_glossy({entered.sigma, {mirrored(f.x), mirrored(f.y), mirrored(f.z)}}, p, lobe,
+                          rule);
+}
+
+LightField through_glossy(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
                           BrdfCovariance rule) {
+    if (lobe.is_pane && lobe.kind == LobeKind::glossy_transmission)
+        return through_pane(entered, p, lobe, rule);
     const bool reflects = lobe.kind == LobeKind::glossy_reflection;
     if (reflects && rule == BrdfCovariance::local && lobe.alpha_x == lobe.alpha_y)
         return reflect_round(entered, p, lobe);

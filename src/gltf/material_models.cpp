@@ -67,11 +67,14 @@ MaterialId MaterialBuilder::glass() {
         warn(
             "KHR_materials_iridescence: of a surface that transmits light the colours of the film "
             "are missing");
-    if (!has_volume && !is_rough) return add(ThinDielectricMaterial{border_.mean_eta, base_});
-    if (!has_volume)
-        warn(
-            "KHR_materials_transmission: a rough surface without KHR_materials_volume is "
-            "rendered as the rough border of a solid body, which refracts");
+    if (!has_volume) {
+        ThinDielectricMaterial pane{border_.mean_eta, base_};
+        if (is_rough) {
+            pane.u_roughness = widths_.u;
+            pane.v_roughness = widths_.v;
+        }
+        return add(pane);
+    }
     DielectricMaterial m;
     m.eta = border_.mean_eta;
     if (const auto* dispersion = extension(material_.extensions, "KHR_materials_dispersion"))

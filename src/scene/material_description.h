@@ -109,6 +109,9 @@ struct CoatedConductorMaterial {
 struct ThinDielectricMaterial {
     float eta = 1.5f;
     TextureId transmittance = -1;  ///< of the pane; none: 1
+    /// GGX widths of both faces together, which spread what passes as what they reflect; none: 0.
+    TextureId u_roughness = -1, v_roughness = -1;
+    static constexpr bool remap_roughness = false;
 };
 /// No surface at all: a border that only separates media.
 struct InterfaceMaterial {};

@@ -91,6 +91,12 @@ void MaterialStore::prepare(const DielectricMaterial& m, Material& material, con
     material.tables.from_inside = &coats_.get(1 / eta, 0);
 }
 
+void MaterialStore::prepare(const ThinDielectricMaterial& m, Material& material,
+                            const TextureStore&) {
+    if (m.u_roughness >= 0 || m.v_roughness >= 0)
+        material.tables.white = &coats_.get(kWhiteIndex, 0);
+}
+
 void MaterialStore::prepare(const MeasuredMaterial& m, Material& material, const TextureStore&) {
     material.tables.measured = &measured_.try_emplace(m.brdf.get(), *m.brdf).first->second;
 }

@@ -123,6 +123,7 @@ class MaterialStore {
                  const TextureStore& textures);
     void prepare(const ConductorMaterial& m, Material& material, const TextureStore&);
     void prepare(const DielectricMaterial& m, Material& material, const TextureStore&);
+    void prepare(const ThinDielectricMaterial& m, Material& material, const TextureStore&);
     void prepare(const MeasuredMaterial& m, Material& material, const TextureStore&);
     template <typename Other>
     void prepare(const Other&, Material&, const TextureStore&) {}

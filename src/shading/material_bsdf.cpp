@@ -142,9 +142,14 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables& table
     return b;
 }
 
-Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Tables&) {
-    return ThinDielectricBsdf{refractive_index(m.eta),
-                              m.transmittance < 0 ? Rgb(1) : v.transmittance()};
+Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Tables& tables) {
+    ThinDielectricBsdf pane{refractive_index(m.eta),
+                            m.transmittance < 0 ? Rgb(1) : v.transmittance()};
+    if (!tables.white) return pane;
+    const Vec2 alpha = v.alphas(m);
+    pane.alpha_x = alpha.x;
+    pane.alpha_y = alpha.y;
+    return with_multiple_scattering(pane, *tables.white);
 }
 
 Bsdf make(const InterfaceMaterial&, const Values&, const Tables&) {

@@ -46,7 +46,7 @@ bool is_constant(const TextureStore& t, const CoatedConductorMaterial& m) {
            all_constant(t, {m.u_roughness, m.v_roughness, m.thickness});
 }
 bool is_constant(const TextureStore& t, const ThinDielectricMaterial& m) {
-    return all_constant(t, {m.transmittance});
+    return all_constant(t, {m.transmittance, m.u_roughness, m.v_roughness});
 }
 bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;

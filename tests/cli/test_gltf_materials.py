@@ -36,6 +36,12 @@ def schlick(f0, f90, v, l):
     return [a + (f90 - a) * (1 - dot(v, h)) ** 5 for a in f0]
 
 
+def fresnel_reflectance(cosine, n):
+    """The share of unpolarised light that the border of a dielectric of index n reflects."""
+    inside = math.sqrt(1 - (1 - cosine**2) / n**2)
+    return (((cosine - n * inside) / (cosine + n * inside)) ** 2 + ((inside - n * cosine) / (inside + n * cosine)) ** 2) / 2
+
+
 def matching(nm):
     """The colour matching functions of CIE 1931 (Wyman, Sloan and Shirley 2013)."""
     def lobe(peak, centre, left, right):
@@ -161,6 +167,19 @@ class GltfMaterials(CliTest):
                 expected = [share * c / math.pi * abs(l[2]) for c in colour]
                 self.assert_close(self.seen(material, v, l, spp=2048, images=images), expected, 0.03, (v, l))
             self.assert_close(self.seen(material, *PAIRS[1], images=images), [0, 0, 0], 0, PAIRS[1])
+
+    def test_rough_panes(self):
+        """Without a volume light passes by the lobe that it is reflected by, mirrored; a pane's two faces reflect 2R/(1 + R)."""
+        colour, alpha = [0.9, 0.5, 0.1], 0.6 ** 2
+        material = {"pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0, "roughnessFactor": 0.6},
+                    "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}}
+        for v, l in PAIRS:
+            fresnel = fresnel_reflectance(dot(v, normalized([x + y for x, y in zip(v, l)])), 1.5)
+            reflected = 2 * fresnel / (1 + fresnel)
+            lobe = ggx(v, l, alpha, alpha, 0) * l[2] / albedo(1, alpha, v[2])
+            self.assert_close(self.seen(material, v, l), [reflected * lobe] * 3, 0.02, (v, l))
+            below = (l[0], l[1], -l[2])
+            self.assert_close(self.seen(material, v, below), [(1 - reflected) * c * lobe for c in colour], 0.02, (v, below))
 
     def test_iridescence(self):
         film = {"iridescenceFactor": 0.7, "iridescenceIor": 1.8, "iridescenceThicknessMinimum": 100, "iridescenceThicknessMaximum": 500}

@@ -63,6 +63,7 @@ std::vector<Case> all_cases() {
         {"conductor_filmed", filmed, 0.4f, 1},
         {"dielectric_brushed", DielectricBsdf{1.5f, 0.3f, 0.1f}, 0.3f, 1.5f},
         {"dielectric_thin", DielectricBsdf{1 / 1.33f, 0.2f, 0.2f}, 0.2f, 1 / 1.33f},
+        {"pane_brushed", ThinDielectricBsdf{1.5f, tan, 0.3f, 0.1f}, 0.3f, 1},
         {"coated_brushed", make_coated_diffuse(coat, reflectance_powers(tan), 0.1f, 0.3f, 5), 0.3f,
          1},
         {"coated_tinted", make_coated_total(coat, tan, 0.1f, 0.3f, {{0.6f, 0.2f, 0}, 0.9f, &white}),
@@ -90,6 +91,10 @@ std::vector<Case> all_cases() {
         const std::string suffix = std::to_string(static_cast<int>(alpha * 100));
         models.push_back({"conductor_" + suffix, ConductorBsdf{eta, k, alpha, alpha}, alpha, 1});
         models.push_back({"dielectric_" + suffix, DielectricBsdf{1.5f, alpha, alpha}, alpha, 1.5f});
+        models.push_back(
+            {"pane_" + suffix,
+             with_multiple_scattering(ThinDielectricBsdf{1.5f, tan, alpha, alpha}, white), alpha,
+             1});
         models.push_back({"coated_" + suffix,
                           make_coated_diffuse(coat, reflectance_powers(tan), alpha, alpha, 5),
                           alpha, 1});

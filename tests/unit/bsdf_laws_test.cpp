@@ -157,6 +157,9 @@ std::vector<Case> all_cases() {
         {"frost_on_mirror", coated_metal(0.2f, 0.2f, 0, 0)},
         {"frost_on_copper", coated_metal(0.1f, 0.3f, 0.05f, 0.4f)},
         {"pane", ThinDielectricBsdf{1.5f}},
+        {"pane_brushed", ThinDielectricBsdf{1.5f, Rgb(0.9f), 0.05f, 0.4f}},
+        {"pane_bouncing",
+         with_multiple_scattering(ThinDielectricBsdf{1.5f, Rgb(0.9f), 0.6f, 0.6f}, white())},
         {"interface", InterfaceBsdf{}},
         {"unlit", UnlitBsdf{tan, true}},
         {"wax", wax(0, 0, false)},
@@ -219,7 +222,9 @@ bool has_gain(const Bsdf& bsdf) {
     const auto* metal = std::get_if<ConductorBsdf>(&bsdf);
     const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
     const auto* coated = std::get_if<CoatedDiffuseBsdf>(&bsdf);
-    return (metal && metal->white) || (glass && glass->from_outside) || (coated && coated->white);
+    const auto* pane = std::get_if<ThinDielectricBsdf>(&bsdf);
+    return (metal && metal->white) || (glass && glass->from_outside) || (coated && coated->white) ||
+           (pane && pane->white);
 }
 
 TEST_P(BsdfLaws, Reciprocity) {

@@ -41,6 +41,8 @@ std::vector<Model> models() {
             {"brushed conductor", ConductorBsdf{Rgb(1.2f), Rgb(7.0f), 0.05f, 0.4f}},
             {"dielectric", DielectricBsdf{1.5f, 0.3f, 0.3f}},
             {"brushed dielectric", DielectricBsdf{1.3f, 0.1f, 0.5f}},
+            {"rough pane", ThinDielectricBsdf{1.5f, Rgb(1), 0.3f, 0.3f}},
+            {"brushed pane", ThinDielectricBsdf{1.4f, Rgb(1), 0.1f, 0.4f}},
             {"coat",
              make_coated_diffuse(coat_table(), reflectance_powers(Rgb(0.4f)), 0.3f, 0.15f, 10)}};
 }

@@ -220,29 +220,6 @@ TEST(GltfMaterials, TransmitsDiffuselyAShareOfTheLight) {
     EXPECT_FALSE(contains(all_warnings(scene), "left out"));
 }
 
-TEST(GltfMaterials, TransmitsAsPaneOrBody) {
-    const json transmission = {{"transmissionFactor", 1}};
-    const json pbr = {
-        {"metallicFactor", 0}, {"roughnessFactor", 0}, {"baseColorFactor", {0.5, 1, 1, 1}}};
-    const auto pane = with_material(
-        {{"pbrMetallicRoughness", pbr},
-         {"extensions",
-          {{"KHR_materials_transmission", transmission}, {"KHR_materials_ior", {{"ior", 1.4}}}}}});
-    const auto& thin = model_of<ThinDielectricMaterial>(pane, pane.shapes[0].material);
-    EXPECT_NEAR(thin.eta, 1.4f, 1e-6f);
-    expect_near(constant_value(pane, thin.transmittance), {0.5f, 1, 1}, 0);
-    const auto body = with_material({{"pbrMetallicRoughness", pbr},
-                                     {"extensions",
-                                      {{"KHR_materials_transmission", transmission},
-                                       {"KHR_materials_volume",
-                                        {{"thicknessFactor", 1},
-                                         {"attenuationDistance", 2},
-                                         {"attenuationColor", {std::exp(-1), 1, 1}}}}}}});
-    EXPECT_NO_THROW(model_of<DielectricMaterial>(body, body.shapes[0].material));
-    ASSERT_EQ(body.shapes[0].inside, 0);
-    expect_near(body.media[0].sigma_a, {0.5f, 0, 0}, 1e-6f);
-}
-
 TEST(GltfMaterials, TakesAnyRefractiveIndex) {
     const auto eta = [](double ior) {
         const auto scene = with_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
