@@ -26,19 +26,15 @@ constexpr float kLeastLit = 0.1f;  // share of the rays by which a lamp has to b
 /// too: as much as makes the program tell of a dark image (image/darkness.h, decision 0120).
 constexpr float kLeastReached = 0.5f;
 constexpr int kSkyRays = 8;  // per place that is seen
+/// Value in the image of what glows as the sky does: that below the horizon (scene/defaults.cpp).
+constexpr float kGlow = 0.1f;
+constexpr float kLeastPassed = 0.5f;  // share of light that what is no wall to it lets through
 
 /// Whether light passes surfaces of a material: borders of media, and what is seen but throws no
 /// shadow.
 bool lets_light_pass(const MaterialDescription& material) {
     return std::holds_alternative<InterfaceMaterial>(material.value) ||
            std::holds_alternative<UnlitMaterial>(material.value);
-}
-
-/// Whether a path goes straight through a surface, or nearly.
-bool is_clear(const MaterialDescription& material) {
-    return lets_light_pass(material) ||
-           std::holds_alternative<ThinDielectricMaterial>(material.value) ||
-           std::holds_alternative<DielectricMaterial>(material.value);
 }
 
 /// Follows a ray past surfaces that it does not see. `passed`: the place of the last back.
@@ -58,12 +54,17 @@ bool follow(const SceneDescription& scene, const Geometry& geometry, Ray ray, Su
     return false;
 }
 
+TexturePoint place_on(const SurfaceHit& hit) {
+    return {hit.uv, hit.position, {}, {}, hit.vertices()};
+}
+
 /// Lamps of one scene.
 class Lamps {
   public:
-    Lamps(SceneDescription& scene, const Geometry& geometry)
+    Lamps(SceneDescription& scene, const Geometry& geometry, const TextureStore& textures)
         : scene_(scene),
           geometry_(geometry),
+          textures_(textures),
           camera_(scene.camera, scene.film.width, scene.film.height) {}
 
     void stand() {
@@ -110,25 +111,55 @@ class Lamps {
         return std::abs(dot(hit.ng, away)) / (distance * distance * distance);
     }
 
-    /// Whether a ray from a hit that is seen along `view` leaves the scene, through panes as well.
-    bool escapes(const SurfaceHit& hit, Vec3 view, Vec3 direction) const {
+    /// Whether a surface glows in the direction w away from it, for the camera and for others.
+    /// Files whose surfaces glow by up to 1 get the lights that stand in, too.
+    bool glows(const SurfaceHit& hit, Vec3 w) const {
+        const int index = geometry_.shapes()[hit.shape].description.area_light;
+        if (index < 0) return false;
+        const AreaLightDescription& light = scene_.area_lights[static_cast<size_t>(index)];
+        if (!light.two_sided && !(dot(hit.ng, w) > 0)) return false;
+        Rgb radiance = light.radiance * imaging_scale(scene_);
+        if (light.image >= 0) radiance *= textures_.eval(light.image, place_on(hit));
+        return max_component(radiance) >= kGlow;
+    }
+
+    /// Whether most light gets through a surface: through glass, straight or not, of which paths
+    /// leave bodies again, and through cloth. Of a mix the larger part decides.
+    bool is_passed(MaterialId id, const TexturePoint& at) const {
+        while (id >= 0 && scene_.materials[static_cast<size_t>(id)].mix) {
+            const MaterialMix& mix = *scene_.materials[static_cast<size_t>(id)].mix;
+            id = mix.materials[textures_.eval_float(mix.amount, at) > kLeastPassed ? 1 : 0];
+        }
+        if (id < 0) return false;
+        const MaterialDescription& material = scene_.materials[static_cast<size_t>(id)];
+        const auto& value = material.value;
+        if (const auto* cloth = std::get_if<DiffuseTransmissionMaterial>(&value))
+            return cloth->transmittance >= 0 &&
+                   cloth->scale * max_component(textures_.eval(cloth->transmittance, at)) >=
+                       kLeastPassed;
+        return lets_light_pass(material) || std::holds_alternative<ThinDielectricMaterial>(value) ||
+               std::holds_alternative<DielectricMaterial>(value);
+    }
+
+    /// Whether a ray from a hit that is seen along `view` leaves the scene, through what lets most
+    /// light pass as well, or meets what glows.
+    bool finds_light(const SurfaceHit& hit, Vec3 view, Vec3 direction) const {
         if (dot(hit.ng, view) * dot(hit.ng, direction) >= 0) return false;
         Ray shadow{Geometry::offset_origin(hit, direction), direction, hit.time};
         shadow.kind = RayKind::shadow;
         SurfaceHit met;
         for (int i = 0; i < kMostPassed; ++i) {
-            if (!geometry_.intersect(shadow, met)) return true;
+            if (!geometry_.intersect(shadow, met) || glows(met, -direction)) return true;
             const PlacedShape& shape = geometry_.shapes()[met.shape];
-            const MaterialId material = shape.description.material;
-            if (!shape.lets_light_pass &&
-                (material < 0 || !is_clear(scene_.materials[static_cast<size_t>(material)])))
+            if (!shape.lets_light_pass && !is_passed(shape.description.material, place_on(met)))
                 return false;
             shadow.origin = Geometry::offset_origin(met, direction);
         }
         return false;
     }
 
-    /// Whether light from outside, the distant lights and the sky, reaches little of what is seen.
+    /// Whether little of what is seen glows or is reached by light: of what glows, or from outside,
+    /// that of distant lights and the sky.
     bool is_dark() const {
         int seen = 0, reached = 0;
         for_all([&](float x, float y) {
@@ -142,16 +173,17 @@ class Lamps {
     }
 
     bool is_reached(const SurfaceHit& hit, Vec3 view) const {
+        if (glows(hit, -view)) return true;
         for (const LightDescription& light : scene_.lights)
             if (const auto* distant = std::get_if<DistantLight>(&light.value);
-                distant && escapes(hit, view, light.light_to_world.vector(distant->direction)))
+                distant && finds_light(hit, view, light.light_to_world.vector(distant->direction)))
                 return true;
         const Frame frame = Frame::from_z(face_forward(hit.ng, -view));
         for (int i = 0; i < kSkyRays; ++i) {
             constexpr float kGolden = 0.61803399f;  // spreads azimuths evenly
             const float turn = float(i) * kGolden;
             const Vec2 u{(float(i) + 0.5f) / kSkyRays, turn - std::floor(turn)};
-            if (escapes(hit, view, frame.to_world(square_to_cosine_hemisphere(u)))) return true;
+            if (finds_light(hit, view, frame.to_world(square_to_cosine_hemisphere(u)))) return true;
         }
         return false;
     }
@@ -214,13 +246,15 @@ class Lamps {
 
     SceneDescription& scene_;
     const Geometry& geometry_;
+    const TextureStore& textures_;
     const Camera camera_;
 };
 
 }  // namespace
 
-const SceneDescription& stand_lamps(SceneDescription& scene, const Geometry& geometry) {
-    if (!scene.lamps.empty()) Lamps(scene, geometry).stand();
+const SceneDescription& stand_lamps(SceneDescription& scene, const Geometry& geometry,
+                                    const TextureStore& textures) {
+    if (!scene.lamps.empty()) Lamps(scene, geometry, textures).stand();
     return scene;
 }
 

@@ -3,6 +3,7 @@
 
 #include "geometry/geometry.h"
 #include "scene/scene_description.h"
+#include "texture/texture.h"
 
 namespace covtrace {
 
@@ -11,7 +12,9 @@ namespace covtrace {
 /// last of them. Where the power is left open, white surfaces are at most 0.6 times as bright as
 /// white in three quarters of what is seen, in the lamp's light that comes straight. Of several
 /// such lamps each would reach that by itself and has its share of that power, one over their
-/// number: together they may reach more or less. A warning tells the power. Deterministic.
-const SceneDescription& stand_lamps(SceneDescription& scene, const Geometry& geometry);
+/// number: together they may reach more or less. A warning tells the power. Rays pass where alpha
+/// of the geometry, which is to be set, lets them. Deterministic.
+const SceneDescription& stand_lamps(SceneDescription& scene, const Geometry& geometry,
+                                    const TextureStore& textures);
 
 }  // namespace covtrace

@@ -66,15 +66,12 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     : description(std::move(scene_description)),
       textures(description, texture_bytes),
       geometry(displace(description, textures), isa),
-      lights(stand_lamps(description, geometry), geometry, &textures),
+      lights(lit_description(), geometry, &textures),
       materials(description, textures,
                 description.adapts_colours ? IlluminantAdaptation(lights.total_power())
                                            : IlluminantAdaptation()),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
-    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position, const VertexPlace& vertices) {
-        return textures.eval_float(id, {uv, position, {}, {}, vertices});
-    });
     lights.set_layers([this](MaterialId id) { return materials.has_layers(id); },
                       [this](MaterialId id, const TexturePoint& at, float cosine) {
                           return materials.emission_share(id, at, cosine, textures);
@@ -94,6 +91,13 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     if (!kinds_differ) mirrors = FlatMirrors(description, geometry);
     samples_by_mirrors = !mirrors.is_empty();
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
+}
+
+const SceneDescription& LitScene::lit_description() {
+    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position, const VertexPlace& vertices) {
+        return textures.eval_float(id, {uv, position, {}, {}, vertices});
+    });
+    return stand_lamps(description, geometry, textures);
 }
 
 void LitScene::throw_if_interrupted() const {

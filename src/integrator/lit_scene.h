@@ -66,6 +66,11 @@ struct LitScene {
     /// Whether what is learnt from the scene before it is rendered is not wanted any more; null:
     /// always wanted. Any thread calls it.
     std::function<bool()> is_interrupted;
+
+  private:
+    /// The description with its lamps in place. Their rays pass where alpha lets them, so that it
+    /// is set here.
+    const SceneDescription& lit_description();
 };
 
 }  // namespace covtrace

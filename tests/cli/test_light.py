@@ -1,10 +1,13 @@
 """--light: lamps beside the scene's own, how bright they are, that films know them, and what tells of dark images."""
 
+import json
 import math
 import re
+import struct
 import unittest
 
 import exr
+from gltf_file import uri
 from support import DONE, TINY, USAGE, CliTest, warnings_of
 
 RADIUS, REFLECTANCE = 3, 0.5
@@ -19,6 +22,26 @@ LightSource "infinite"
 Material "diffuse" "rgb reflectance" [{REFLECTANCE} {REFLECTANCE} {REFLECTANCE}]
 Shape "sphere" "float radius" {RADIUS}
 """
+
+
+def glowing_room(emission):
+    """A glTF file: a closed room of 2 by 2 by 2 whose walls glow, and a camera in its middle."""
+    corners = [2 * (i >> axis & 1) - 1 for i in range(8) for axis in range(3)]
+    sides = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+    data = struct.pack("<24f", *corners) + struct.pack("<36H", *[i for a, b, c, d in sides for i in (a, b, c, a, c, d)])
+    return json.dumps({
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}, {"camera": 0}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
+        "materials": [{"doubleSided": True, "emissiveFactor": [emission] * 3, "pbrMetallicRoughness": {"metallicFactor": 0}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [-1] * 3, "max": [1] * 3},
+            {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}],
+        "buffers": [{"byteLength": len(data), "uri": uri(data)}],
+    })
 
 
 class Light(CliTest):
@@ -131,17 +154,39 @@ class Light(CliTest):
         told = re.search('--light "(.*)"', warnings[-1])[1]
         again, _ = self.seen("--light", told, scene=dark)
         self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
-        # Outside, where half of the room is open, and where it is of glass, the light that stands in is enough.
-        ball = 'Material "diffuse"\nTranslate 1.5 0.45 1.5\nShape "sphere" "float radius" 0.9\n'
-        glass = re.sub('Material "diffuse" .*', 'Material "dielectric"', dark) + ball
-        for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0'), glass):
+        # Outside, and where half of the room is open, the light that stands in is enough.
+        for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0')):
             _, warnings = self.seen(scene=open_scene)
             self.assertIn("no lights", "".join(warnings))
             self.assertNotIn("walls", "".join(warnings))
 
+    def test_light_that_walls_let_pass_is_no_darkness(self):
+        dark = ROOM.replace('LightSource "infinite"\n', "")
+        ball = 'Material "diffuse"\nTranslate 1.5 0.45 1.5\nShape "sphere" "float radius" 0.9\n'
+        mix = ('MakeNamedMaterial "wall" "string type" "diffuse"\nMakeNamedMaterial "glass" "string type" "dielectric"\n'
+               'Material "mix" "string materials" ["wall" "glass"] "float amount" ')
+        cloth = 'Material "diffusetransmission" "rgb transmittance" '
+        for wall, is_dark in (('Material "dielectric"', False), (mix + "0.9", False), (mix + "0.1", True),
+                              (cloth + "[.6 .6 .6]", False), (cloth + "[.1 .1 .1]", True)):
+            _, warnings = self.seen(scene=re.sub('Material "diffuse" .*', wall, dark) + ball)
+            self.assertEqual("walls" in "".join(warnings), is_dark, wall)
+        for alpha, is_dark in ((0.1, False), (0.99, True)):
+            _, warnings = self.seen(scene=dark.replace('"float radius" 3', f'"float radius" 3 "float alpha" {alpha}') + ball)
+            self.assertEqual("walls" in "".join(warnings), is_dark, alpha)
+
+    def test_rooms_that_glow_are_not_dark(self):
+        for emission, is_dark in ((0.8, False), (0.01, True)):
+            self.write("room.gltf", glowing_room(emission))
+            result = self.run_program("render", "room.gltf", "-o", "out.exr", "--resolution", "24x24", "--spp", "1", "--progress", "none")
+            self.assertEqual(result.code, DONE, result)
+            told = "".join(text for _, text in warnings_of(result))
+            self.assertIn("no lights", told)
+            self.assertEqual("walls" in told, is_dark, emission)
+
     def test_scenes_without_shapes_are_told(self):
         sky = ROOM.split("Material")[0]
         self.assertIn("the scene has no shapes", self.seen(scene=sky)[1][0])
+        self.assertRegex(self.run_program("info", "scene.pbrt").stdout, r"(?m)^warning    the scene has no shapes")
         fog = sky.replace("Camera", 'MakeNamedMedium "fog" "string type" "homogeneous"\nMediumInterface "" "fog"\nCamera', 1).replace('"path"', '"volpath"')
         for seen in (ROOM, fog):
             self.assertNotIn("no shapes", "".join(self.seen(scene=seen)[1]))
