@@ -75,8 +75,10 @@ std::string summarize(const SceneDescription& scene) {
         << "lights     " << scene.lights.size() << " and " << top.emitters << " emitting shapes\n";
     out << "hash       " << std::hex << std::setw(16) << std::setfill('0') << scene.content_hash
         << std::dec << "\n";
-    for (const Warning& w : scene.warnings)
-        out << "warning    " << w.where.to_string() << ": " << w.text << "\n";
+    for (const Warning& w : scene.warnings) {
+        const std::string place = w.where.to_string();
+        out << "warning    " << place << (place.empty() ? "" : ": ") << w.text << "\n";
+    }
     return out.str();
 }
 
