@@ -13,7 +13,7 @@ ALL = (*COUNTED, INVALID_OPENED, INVALID_REFUSED, INCOMPLETE, OTHER_VERSION, NOT
 # Every other warning counts as a replacement.
 NOTHING_REPLACED = {
     "no camera in the file": ("the scene has no camera", "no Camera"),
-    "no light in the file": ("the scene has no lights", "walls keep that light"),
+    "no light in the file": ("the scene has no lights", "walls keep the sky"),
     "nothing in the file to be seen": ("the scene has no shapes",),
     "an animation, shown at one moment": ("the scene is rendered at rest",),
     "several cameras, the first is taken": (" cameras is used",),

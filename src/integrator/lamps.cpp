@@ -226,8 +226,8 @@ class Lamps {
         scene_.warnings.push_back(
             {{},
              lamp.is_for_the_dark
-                 ? "walls keep that light from most of what is seen; a lamp at the camera lights "
-                   "it: --light " +
+                 ? "walls keep the sky and the key light from most of what is seen; a lamp at the "
+                   "camera lights it: --light " +
                        text
                  : "a lamp has the power that suits the view: " + text});
     }

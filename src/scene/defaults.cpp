@@ -30,8 +30,9 @@ void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
     key.direction = normalize(camera_to_world.vector(normalize(Vec3{-0.5f, 0.7f, -0.6f})));
     key.angle = kKeyAngle;
     scene.lights.push_back({key, {}, where});
-    // The power follows from the view, and would change from frame to frame
-    if (!scene.swept.empty()) return;
+    // The power follows from the view, and would change from frame to frame. In a medium the light
+    // beside a lamp at the eye has no bound
+    if (!scene.swept.empty() || scene.camera.medium >= 0) return;
     LampDescription lamp;
     lamp.is_for_the_dark = true;
     scene.lamps.push_back(lamp);

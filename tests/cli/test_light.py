@@ -150,7 +150,7 @@ class Light(CliTest):
         dark = ROOM.replace('LightSource "infinite"\n', "")
         image, warnings = self.seen(scene=dark)
         self.assertAlmostEqual(self.mean(image["G"]), 0.6 * REFLECTANCE, delta=0.01)
-        self.assertRegex(warnings[-1], "walls keep that light from most of what is seen")
+        self.assertRegex(warnings[-1], "walls keep the sky and the key light from most of what is seen")
         told = re.search('--light "(.*)"', warnings[-1])[1]
         again, _ = self.seen("--light", told, scene=dark)
         self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
@@ -159,6 +159,14 @@ class Light(CliTest):
             _, warnings = self.seen(scene=open_scene)
             self.assertIn("no lights", "".join(warnings))
             self.assertNotIn("walls", "".join(warnings))
+
+    def test_the_camera_gets_none_in_a_medium(self):
+        # The light that a medium sends to an eye beside a lamp is infinite.
+        fog = 'MakeNamedMedium "fog" "string type" "homogeneous" "float scale" 0.1\nMediumInterface "" "fog"\nCamera'
+        image, warnings = self.seen(scene=ROOM.replace('LightSource "infinite"\n', "").replace("Camera", fog, 1).replace('"path"', '"volpath"'))
+        self.assertEqual(max(image["G"]), 0)
+        self.assertNotIn("walls", "".join(warnings))
+        self.assertIn("100 % of the surfaces in view are black", warnings[-1])
 
     def test_light_that_walls_let_pass_is_no_darkness(self):
         dark = ROOM.replace('LightSource "infinite"\n', "")
