@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "camera/camera.h"
 #include "core/frame.h"
+#include "core/sampler.h"
 #include "core/warp.h"
 #include "integrator/visibility.h"
 #include "scene/added_lamps.h"
 #include "scene/imaging_scale.h"
+#include "shading/material.h"
 
 namespace covtrace {
 
@@ -21,6 +24,11 @@ constexpr int kMostPassed = 64;  // backs, or surfaces of glass, that a ray pass
 /// Value of a white surface in the direct light of all lamps, where that is more than in so large a
 /// share of what is seen. The rest, near the lamp, may be brighter.
 constexpr float kGoal = 0.6f, kBrighterThan = 0.75f;
+/// Value of a white surface with the light that others send on, where that is more than as much
+/// again: in white rooms and near a wall behind the lamp.
+constexpr float kGoalWithOthers = 1.2f;
+constexpr uint32_t kPaths = 8;     // per place, that look for light which others send on
+constexpr int kMostSent = 8;       // surfaces that such a path meets
 constexpr float kLeastLit = 0.1f;  // share of the rays by which a lamp has to be seen to light
 /// Share of what the camera sees that some light from outside must reach, or a lamp stands there,
 /// too: as much as makes the program tell of a dark image (image/darkness.h, decision 0120).
@@ -141,6 +149,51 @@ class Lamps {
                std::holds_alternative<DielectricMaterial>(value);
     }
 
+    /// Finds the nearest surface that keeps light.
+    bool meet(Ray ray, SurfaceHit& hit) const {
+        for (int i = 0; i < kMostPassed; ++i) {
+            if (!geometry_.intersect(ray, hit)) return false;
+            const PlacedShape& shape = geometry_.shapes()[hit.shape];
+            if (!shape.lets_light_pass && !is_passed(shape.description.material, place_on(hit)))
+                return true;
+            ray.origin = Geometry::offset_origin(hit, ray.direction);
+        }
+        return false;
+    }
+
+    /// The share of light that a surface sends back to where `view` comes from.
+    float albedo_of(const SurfaceHit& hit, Vec3 view) const {
+        const MaterialId id = geometry_.shapes()[hit.shape].description.material;
+        const PlacedMaterial material = materials_->at(id, hit, textures_);
+        const Vec3 wo = shading_frame(hit).to_local(-view);
+        const Bsdf bsdf = materials_->bsdf(material.id, hit, textures_);
+        const float share = material.weight * luminance(albedo(bsdf, wo));
+        return std::isfinite(share) ? clamp01(share) : 0;
+    }
+
+    /// The irradiance of a hit that is seen along `view`, by a lamp of intensity 1, by way of other
+    /// surfaces, which count as Lambertian: the mean over paths of the place with that number.
+    float irradiance_by_others(const SurfaceHit& seen, Vec3 view, Vec3 lamp, int number) const {
+        double sum = 0;
+        for (uint32_t path = 0; path < kPaths; ++path) {
+            Sampler sampler(0, number % kSide, number / kSide, path);
+            SurfaceHit hit = seen;
+            Vec3 direction = view;
+            float share = 1;
+            for (int i = 1; i < std::min(scene_.max_depth, kMostSent) && share > 0; ++i) {
+                const Frame frame = Frame::from_z(face_forward(hit.ng, -direction));
+                direction = frame.to_world(square_to_cosine_hemisphere(sampler.next_2d()));
+                Ray ray{Geometry::offset_origin(hit, direction), direction, hit.time};
+                ray.kind = RayKind::diffuse;
+                if (!meet(ray, hit)) break;
+                share *= albedo_of(hit, direction);
+                if (dot(hit.ng, direction) * dot(hit.ng, lamp - hit.position) < 0)
+                    sum += share * irradiance(hit, lamp);
+            }
+        }
+        return float(sum / kPaths);
+    }
+
     /// Whether a ray from a hit that is seen along `view` leaves the scene, through what lets most
     /// light pass as well, or meets what glows.
     bool finds_light(const SurfaceHit& hit, Vec3 view, Vec3 direction) const {
@@ -148,14 +201,7 @@ class Lamps {
         Ray shadow{Geometry::offset_origin(hit, direction), direction, hit.time};
         shadow.kind = RayKind::shadow;
         SurfaceHit met;
-        for (int i = 0; i < kMostPassed; ++i) {
-            if (!geometry_.intersect(shadow, met) || glows(met, -direction)) return true;
-            const PlacedShape& shape = geometry_.shapes()[met.shape];
-            if (!shape.lets_light_pass && !is_passed(shape.description.material, place_on(met)))
-                return false;
-            shadow.origin = Geometry::offset_origin(met, direction);
-        }
-        return false;
+        return !meet(shadow, met) || glows(met, -direction);
     }
 
     /// Whether little of what is seen glows or is reached by light: of what glows, or from outside,
@@ -196,12 +242,17 @@ class Lamps {
     }
 
     /// Power by which a point light brings what it lights to the goal.
-    float power_at(Vec3 place) const {
+    float power_at(Vec3 place) {
+        if (!materials_) materials_.emplace(scene_, textures_);
         std::vector<float> lit;
-        const auto add = [&](const Ray& ray) {
+        auto add = [&, number = 0](const Ray& ray) mutable {
             SurfaceHit hit;
+            ++number;
             if (!follow(scene_, geometry_, ray, hit)) return;
-            if (const float e = irradiance(hit, place); e > 0 && std::isfinite(e)) lit.push_back(e);
+            const float e = irradiance(hit, place);
+            if (!(e > 0) || !std::isfinite(e)) return;
+            const float others = irradiance_by_others(hit, ray.direction, place, number);
+            lit.push_back(std::max(e, (e + others) * (kGoal / kGoalWithOthers)));
         };
         for_all([&](float x, float y) { add(view_ray(x, y)); });
         if (float(lit.size()) < kLeastLit * kSide * kSide)  // nothing that is in view: all around
@@ -227,7 +278,7 @@ class Lamps {
             {{},
              lamp.is_for_the_dark
                  ? "walls keep the sky and the key light from most of what is seen; a lamp at the "
-                   "camera lights it: --light " +
+                   "camera lights it (option light): " +
                        text
                  : "a lamp has the power that suits the view: " + text});
     }
@@ -248,6 +299,7 @@ class Lamps {
     const Geometry& geometry_;
     const TextureStore& textures_;
     const Camera camera_;
+    std::optional<MaterialStore> materials_;  ///< as they are in white light; none: not asked for
 };
 
 }  // namespace

@@ -102,6 +102,15 @@ class Light(CliTest):
         for arguments, scene in ((("--light", "camera", "--light", "camera"), ROOM), (("--light", "camera"), slow)):
             self.assertAlmostEqual(self.mean(self.seen(*arguments, scene=scene)[0]["G"]), 0.6 * REFLECTANCE, delta=0.01)
 
+    def test_white_rooms_are_not_burnt_out(self):
+        # Each of 8 bounces of a sphere sends on the same share of the lamp's even light.
+        for reflectance in (0.3, 0.8):
+            white = ROOM.replace("[0.5 0.5 0.5]", f"[{reflectance} {reflectance} {reflectance}]").replace('maxdepth" 1', 'maxdepth" 8')
+            image, _ = self.seen("--light", "camera", "--spp", "64", scene=white)
+            with_others = (1 - reflectance**8) / (1 - reflectance)
+            expected = reflectance * min(0.6 * with_others, 1.2)
+            self.assertAlmostEqual(self.mean(image["G"]) / expected, 1, delta=0.02, msg=reflectance)
+
     def test_what_is_told_of_a_lamp_is_that_lamp(self):
         image, warnings = self.seen("--light", "0.0123456,-0.5,0 radius 0.4 colour 1,0.5,0")
         text = re.search('"(.*)"', warnings[0])[1]
@@ -151,7 +160,7 @@ class Light(CliTest):
         image, warnings = self.seen(scene=dark)
         self.assertAlmostEqual(self.mean(image["G"]), 0.6 * REFLECTANCE, delta=0.01)
         self.assertRegex(warnings[-1], "walls keep the sky and the key light from most of what is seen")
-        told = re.search('--light "(.*)"', warnings[-1])[1]
+        told = re.search('option light.*"(.*)"', warnings[-1])[1]
         again, _ = self.seen("--light", told, scene=dark)
         self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
         # Outside, and where half of the room is open, the light that stands in is enough.
