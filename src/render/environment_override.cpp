@@ -32,8 +32,10 @@ std::string text(const SceneOverrides& overrides) {
         out << e->radiance.r << ',' << e->radiance.g << ',' << e->radiance.b;
     else
         out << "the scene's";
-    if (overrides.environment_rotation) out << " turned by " << *overrides.environment_rotation;
-    if (overrides.environment_scale) out << " times " << *overrides.environment_scale;
+    if (const float degrees = overrides.environment_rotation.value_or(0); degrees != 0)
+        out << " turned by " << degrees;
+    if (const float scale = overrides.environment_scale.value_or(1); scale != 1)
+        out << " times " << scale;
     return out.str();
 }
 

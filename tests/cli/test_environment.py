@@ -100,10 +100,14 @@ class Environment(CliTest):
         arguments = ["--checkpoint", "a.film", "--environment", "sky.pfm", "--spp", "2"]
         self.assertEqual(self.render(view(), *arguments).code, DONE)
         self.assertEqual(self.render(view(), *arguments, "--resume").code, DONE)
+        unchanged = ["--environment-rotation", "0", "--environment-scale", "1"]
+        self.assertEqual(self.render(view(), *arguments, *unchanged, "--resume").code, DONE)
         for other in (["--environment-rotation", "1"], ["--environment-scale", "2"], ["--environment", "1"]):
             self.assert_fails(self.render(view(), *arguments, *other, "--resume"), USAGE, "film of another render")
         own = ["--checkpoint", "a.film", "--spp", "2", "--resume"]
         self.assert_fails(self.render(view(), *own), USAGE, "film of another render")
+        self.assertEqual(self.render(view(), "--checkpoint", "b.film", "--spp", "2", *unchanged).code, DONE)
+        self.assertEqual(self.render(view(), "--checkpoint", "b.film", "--spp", "2", "--resume").code, DONE)
         self.write("sky.pfm", sky(16))
         self.assert_fails(self.render(view(), *arguments, "--resume"), USAGE, "images")
 
