@@ -55,6 +55,16 @@ void open_lens(float f_number, CameraDescription& camera) {
     camera.lens_radius = focal_length / (2 * f_number);
 }
 
+/// Tells that a focal distance changes nothing where the lens is closed.
+void warn_of_closed_lens(SceneDescription& scene) {
+    if (scene.camera.lens_radius > 0) return;
+    const bool may_open = scene.camera.kind == CameraDescription::Kind::perspective;
+    scene.warnings.push_back(
+        {{},
+         std::string("--focus changes nothing: the camera's lens is closed") +
+             (may_open ? ", and all is sharp until --fstop opens it" : ", and all is sharp")});
+}
+
 }  // namespace
 
 void apply(const SceneOverrides& overrides, SceneDescription& scene) {
@@ -70,6 +80,7 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
         throw Error(ErrorKind::scene, "the scene is too large to place a camera");
     if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
     if (overrides.f_number) open_lens(*overrides.f_number, scene.camera);
+    if (overrides.focal_distance) warn_of_closed_lens(scene);
     if (overrides.max_depth) scene.max_depth = *overrides.max_depth;
     add_lamps(overrides.lamps, scene);
     if (overrides.environment) replace_environment(*overrides.environment, scene);

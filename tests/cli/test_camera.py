@@ -83,6 +83,20 @@ class Camera(CliTest):
         self.assertNotEqual(sharp, self.colours(FRONT, options=["--fstop", "0.01", "--focus", "2"])[1])
         self.assertNotEqual(sharp, pixels)
 
+    def test_a_focus_of_closed_lenses_is_told(self):
+        told = "--focus changes nothing: the camera's lens is closed"
+        for lens, options, way_out in (
+            ('"perspective"', (), " until --fstop opens it"),
+            ('"orthographic"', (), ""),
+            ('"perspective" "float lensradius" 1', (), None),
+            ('"perspective"', ("--fstop", "2"), None),
+            ('"perspective" "float lensradius" 1', ("--camera", FRONT), " until --fstop opens it"),
+        ):
+            result = self.render(ELSEWHERE + f"Camera {lens}\n" + FILM + WORLD, "--focus", "3", *options)
+            self.assertEqual(result.code, DONE, result)
+            expected = [] if way_out is None else [f"warning: {told}, and all is sharp{way_out}"]
+            self.assertEqual([line for line in result.stderr.split("\n") if "focus" in line], expected, (lens, options))
+
     def test_an_f_number_needs_a_focal_length(self):
         """A field of view was made up for these; through an open lens a spherical camera showed something else."""
         for camera in ('Camera "orthographic"', 'Camera "spherical"'):
