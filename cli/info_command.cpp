@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/override_options.h"
 #include "cli/scene_input.h"
+#include "core/error.h"
 #include "image/image.h"
 #include "render/describe_state.h"
 #include "render/film_file.h"
@@ -23,6 +26,20 @@ struct InfoArguments {
     ReadOptions reading;
 };
 
+/// Throws Error(usage) where an option chooses something of a scene, and there is none.
+void require_no_choice(const InfoArguments& a, const std::string& kind) {
+    const ReadOptions& r = a.reading;
+    const std::pair<const char*, bool> choices[] = {
+        {"camera", a.overrides.camera || !r.camera.empty()},
+        {"gltf_scene", !r.gltf_scene.empty()},
+        {"animation", !r.animation.empty()},
+        {"variant", !r.variant.empty()}};
+    for (const auto& [option, is_given] : choices)
+        if (is_given)
+            throw Error(ErrorKind::usage, OptionName{option},
+                        "'" + a.file + "' is " + kind + "; expected a scene");
+}
+
 }  // namespace
 
 void add_info(CLI::App& app, Invocation& invocation) {
@@ -37,6 +54,7 @@ void add_info(CLI::App& app, Invocation& invocation) {
             const std::filesystem::path path = a->file;
             const bool is_piped = a->file == kStandardInput;
             if (!is_piped && is_film(path)) {
+                require_no_choice(*a, "a film");
                 fmt::print("{}", describe(read_film(path)));
                 return 0;
             }
@@ -46,7 +64,9 @@ void add_info(CLI::App& app, Invocation& invocation) {
                 fmt::print("{}", summarize(scene));
                 return 0;
             }
-            fmt::print("{}", describe(read_image(path)));
+            const Image image = read_image(path);
+            require_no_choice(*a, "an image");
+            fmt::print("{}", describe(image));
             return 0;
         };
     });

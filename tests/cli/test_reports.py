@@ -203,6 +203,12 @@ class Info(CliTest):
         self.assert_fails(self.run_program("info", "missing.exr"), SCENE, "missing.exr")
         self.assert_fails(self.run_program("info", "missing.pbrt"), SCENE, "missing.pbrt")
 
+    def test_images_and_films_have_nothing_to_choose(self):
+        self.rendered("--checkpoint", "out.film", "--spp", "1")
+        for option, value in (("--camera", "eye 0,0,0 target 1,0,0 fov 40"), ("--camera", "Front"), ("--gltf-scene", "1"), ("--animation", "none"), ("--variant", "1")):
+            for file, kind in (("out.exr", "an image"), ("out.film", "a film")):
+                self.assert_fails(self.run_program("info", file, option, value), USAGE, f"{option}: '{file}' is {kind}; expected a scene")
+
 
 class Statistics(CliTest):
     def statistics(self, *arguments):
