@@ -157,6 +157,10 @@ void visit_elements(const Document& document, const tinygltf::Accessor& a, size_
     apply_sparse(document, a, element_size, place, visit);
 }
 
+bool is_finite(const float* element, size_t components) {
+    return std::all_of(element, element + components, [](float v) { return std::isfinite(v); });
+}
+
 }  // namespace
 
 size_t accessor_count(const Document& document, int index, const std::string& place) {
@@ -177,15 +181,19 @@ Numbers read_numbers(const Document& document, int index, size_t components,
         float* element = numbers.values.data() + i * components;
         for (size_t c = 0; c < components; ++c)
             element[c] = component(bytes + c * size, a.componentType, a.normalized);
-        if (std::all_of(element, element + components, [](float v) { return std::isfinite(v); }))
-            return;
-        if (not_finite == NotFinite::refused)
+        if (not_finite == NotFinite::refused && !is_finite(element, components))
             document.refuse(here, "element " + std::to_string(i) + " is not finite");
-        std::fill_n(element, components, 0.0f);
-        numbers.not_finite.push_back(static_cast<uint32_t>(i));
     };
     visit_elements(document, a, size * components, here, store);
     numbers.values.resize(a.count * components);
+    // Sparse accessors may have replaced what was not finite at first
+    if (not_finite == NotFinite::zero)
+        for (size_t i = 0; i < a.count; ++i)
+            if (float* element = numbers.values.data() + i * components;
+                !is_finite(element, components)) {
+                std::fill_n(element, components, 0.0f);
+                numbers.not_finite.push_back(static_cast<uint32_t>(i));
+            }
     return numbers;
 }
 

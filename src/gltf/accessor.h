@@ -14,7 +14,7 @@ namespace covtrace::gltf {
 struct Numbers {
     size_t components = 0;
     std::vector<float> values;
-    std::vector<uint32_t> not_finite;  ///< elements that were not, and are zero
+    std::vector<uint32_t> not_finite;  ///< elements that were not, and are zero; sorted
     size_t count() const { return components == 0 ? 0 : values.size() / components; }
     const float* element(size_t i) const { return values.data() + i * components; }
 };

@@ -63,6 +63,16 @@ std::vector<Vec3> vectors(const Numbers& n) {
     return v;
 }
 
+/// Indices of the vertices that were made of one of `sources`, sorted; `made_of`: by vertex.
+std::vector<uint32_t> vertices_of(const std::vector<uint32_t>& made_of,
+                                  const std::vector<uint32_t>& sources) {
+    std::vector<uint32_t> vertices;
+    for (size_t i = 0; i < made_of.size(); ++i)
+        if (std::binary_search(sources.begin(), sources.end(), made_of[i]))
+            vertices.push_back(static_cast<uint32_t>(i));
+    return vertices;
+}
+
 /// Gives vertices the mean normal of the triangles around them, by area.
 void take_normals_of_triangles(TriangleMesh& mesh, const std::vector<uint32_t>& vertices) {
     if (vertices.empty()) return;
@@ -223,12 +233,16 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
     }
     Entry result;
     result.count = count;
-    if (!has_marks(primitive)) mesh->triangles = triangles(indices, mode);
     if (!without_normal.empty())
         warn(attributes + "NORMAL",
              "normals that are not finite become the mean of the triangles around them");
+    if (has_marks(primitive)) {
+        result.kept = make_solid(*mesh, indices, mode, mark_radius);
+        without_normal = vertices_of(result.kept, without_normal);
+    } else {
+        mesh->triangles = triangles(indices, mode);
+    }
     take_normals_of_triangles(*mesh, without_normal);
-    if (has_marks(primitive)) result.kept = make_solid(*mesh, indices, mode, mark_radius);
     if (mesh->triangles.empty()) return {};
     // By the specification tangents count beside normals only.
     if (layout.needs_tangents && attribute("TANGENT") >= 0 && !mesh->normals.empty() &&

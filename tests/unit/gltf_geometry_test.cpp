@@ -100,6 +100,53 @@ TEST(GltfGeometry, NormalsThatAreNotFiniteAreTheTriangles) {
         << all_warnings(scene);
 }
 
+TEST(GltfGeometry, NormalsThatSparseAccessorsMakeFiniteStay) {
+    GltfFile file;
+    const float nan = std::nanf("");
+    const int position = file.add_floats({0, 0, 0, 2, 0, 0, 0, 0, 2}, "VEC3", 3);
+    const int normal = file.add_floats({0, 0, 1, nan, nan, nan, 0, 0, 1}, "VEC3", 3);
+    const int index_view = file.add_view(std::string("\1\0\2\0", 4));
+    const float replaced[6] = {0, 0, 5, nan, 0, 0};
+    const int value_view =
+        file.add_view({reinterpret_cast<const char*>(replaced), sizeof replaced});
+    file.root["accessors"][size_t(normal)]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
+        {"values", {{"bufferView", value_view}}}};
+    file.root["meshes"] = {
+        {{"primitives", {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}}}}}};
+    file.add_node({{"mesh", 0}});
+    const auto scene = read(file);
+    const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
+    expect_near(mesh.normals.at(0), {0, 0, 1}, 0);
+    expect_near(mesh.normals.at(1), {0, 0, 5}, 0);
+    expect_near(mesh.normals.at(2), {0, -1, 0}, 1e-6f);
+}
+
+TEST(GltfGeometry, NormalsOfPointsThatAreNotFiniteAreOfTheirSolids) {
+    GltfFile file;
+    const float nan = std::nanf("");
+    const int position = file.add_floats({0, 0, 0, 2, 0, 0}, "VEC3", 3);
+    const int normal = file.add_floats({nan, nan, nan, 0, 0, 3}, "VEC3", 3);
+    file.root["meshes"] = {
+        {{"primitives",
+          {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"mode", 0}}}}}};
+    file.add_node({{"mesh", 0}});
+    const auto scene = read(file);
+    const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    int of_first = 0;
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+        if (const Vec3 p = mesh.positions[i]; p.x < 1) {
+            EXPECT_NEAR(length(mesh.normals[i]), 1, 1e-5f);
+            EXPECT_NEAR(dot(mesh.normals[i], p) / length(p), 1, 1e-4f);
+            ++of_first;
+        } else {
+            expect_near(mesh.normals[i], {0, 0, 3}, 0);
+        }
+    EXPECT_GT(of_first, 0);
+}
+
 TEST(GltfGeometry, KeepsTheVerticesThatTrianglesUse) {
     // A hundred squares that pick their corners from the vertices of all of them.
     GltfFile file;
