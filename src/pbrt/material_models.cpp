@@ -29,12 +29,13 @@ struct Builder {
     /// `otherwise`.
     template <typename Material>
     void roughness(Material& m, const std::string& prefix = {}, float otherwise = 0) {
-        const auto one = [&](const std::string& name) {
-            const TextureId id = textures.grey_or_none(p, prefix + name);
-            return id >= 0 ? id : textures.grey(p, prefix + "roughness", otherwise);
-        };
-        m.u_roughness = one("uroughness");
-        m.v_roughness = one("vroughness");
+        m.u_roughness = textures.roughness_or_none(p, prefix + "uroughness");
+        m.v_roughness = textures.roughness_or_none(p, prefix + "vroughness");
+        if (m.u_roughness < 0 || m.v_roughness < 0) {
+            const TextureId both = textures.roughness(p, prefix + "roughness", otherwise);
+            if (m.u_roughness < 0) m.u_roughness = both;
+            if (m.v_roughness < 0) m.v_roughness = both;
+        }
         m.remap_roughness = p.flag("remaproughness", true);
     }
 
@@ -331,11 +332,11 @@ MaterialLayers material_layers(Entity& entity, TextureBuilder& textures, BuildCo
     if (is_interface(entity.type)) return layers;
     ParameterList& p = entity.parameters;
     if (const TextureId colour = textures.reflectance_or_none(p, "sheen"); colour >= 0)
-        layers.sheen = SheenLayer{colour, textures.grey(p, "sheenroughness", kSheenRoughness)};
+        layers.sheen = SheenLayer{colour, textures.roughness(p, "sheenroughness", kSheenRoughness)};
     if (const TextureId weight = textures.grey_or_none(p, "coat"); weight >= 0) {
         ClearcoatLayer coat;
         coat.weight = weight;
-        coat.alpha = textures.grey(p, "coatroughness", 0);
+        coat.alpha = textures.roughness(p, "coatroughness", 0);
         coat.eta = constant_index(p, "coateta", kCoatIndex, context);
         coat.tint = textures.reflectance_or_none(p, "coattint");
         layers.clearcoat = coat;

@@ -155,6 +155,19 @@ TextureId TextureBuilder::grey(ParameterList& p, std::string_view name, float ot
     return id >= 0 ? id : constant(Rgb{otherwise}, false);
 }
 
+TextureId TextureBuilder::roughness_or_none(ParameterList& list, std::string_view name) {
+    const TextureId id = grey_or_none(list, name);
+    const Parameter* p = list.find(name, {ParameterType::texture, ParameterType::floats});
+    if (!p || p->type == ParameterType::texture || !(p->numbers[0] < 0)) return id;
+    context_.log.add(p->where, "parameter " + in_quotes(p->name) + " is below 0; cut to 0");
+    return constant(Rgb{0}, false);
+}
+
+TextureId TextureBuilder::roughness(ParameterList& p, std::string_view name, float otherwise) {
+    const TextureId id = roughness_or_none(p, name);
+    return id >= 0 ? id : constant(Rgb{otherwise}, false);
+}
+
 TextureId TextureBuilder::part(Declared& d, std::string_view name, float otherwise) {
     return d.is_spectrum ? unbounded(d.entity.parameters, name, Rgb{otherwise})
                          : grey(d.entity.parameters, name, otherwise);

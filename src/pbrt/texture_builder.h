@@ -35,6 +35,10 @@ class TextureBuilder {
     /// The texture of a float parameter (texture, float).
     TextureId grey(ParameterList& p, std::string_view name, float otherwise);
     TextureId grey_or_none(ParameterList& p, std::string_view name);
+    /// The texture of a roughness, as `grey_or_none` makes it. Values below 0 are cut to 0 with a
+    /// warning.
+    TextureId roughness_or_none(ParameterList& p, std::string_view name);
+    TextureId roughness(ParameterList& p, std::string_view name, float otherwise);
     TextureId grey_of(const Parameter& p);
     /// A value that stands for the whole texture where a single one is needed.
     Rgb mean(TextureId id);

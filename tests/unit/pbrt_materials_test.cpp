@@ -274,6 +274,23 @@ TEST(SceneMaterials, ReflectancesAreAtMostOne) {
     EXPECT_TRUE(contains(warnings_of(made.scene), "above 1"));
 }
 
+TEST(SceneMaterials, RoughnessesAreAtLeastZero) {
+    for (const char* name : {"roughness", "uroughness", "vroughness"}) {
+        const auto made = material_of("\"conductor\" \"float " + std::string(name) + "\" [ -0.3 ]");
+        const auto& metal = std::get<ConductorMaterial>(made.material.value);
+        EXPECT_EQ(constant_value(made.scene, metal.u_roughness), Rgb(0)) << name;
+        EXPECT_EQ(constant_value(made.scene, metal.v_roughness), Rgb(0)) << name;
+        ASSERT_EQ(made.scene.warnings.size(), 1u) << warnings_of(made.scene);
+        EXPECT_EQ(made.scene.warnings[0].text,
+                  "parameter \"" + std::string(name) + "\" is below 0; cut to 0");
+    }
+    for (const char* value : {"0", "0.3"})
+        EXPECT_EQ(warnings_of(material_of("\"conductor\" \"float roughness\" [ " +
+                                          std::string(value) + " ]")
+                                  .scene),
+                  "");
+}
+
 TEST(SceneMaterials, WhiteOfOtherColourSpacesIsNoWarning) {
     for (const char* space : {"aces2065-1", "rec2020", "dci-p3"}) {
         const std::string text = "ColorSpace \"" + std::string(space) +
