@@ -49,7 +49,10 @@ bool lets_light_pass(const MaterialDescription& material) {
 bool follow(const SceneDescription& scene, const Geometry& geometry, Ray ray, SurfaceHit& hit,
             Vec3* passed = nullptr) {
     for (int i = 0; i < kMostPassed; ++i) {
-        if (!geometry.intersect(ray, hit)) return false;
+        // A camera on the plane of a wall does not see it
+        const bool is_first = i == 0 && ray.kind == RayKind::camera;
+        if (!(is_first ? geometry.intersect_seen(ray, hit) : geometry.intersect(ray, hit)))
+            return false;
         const PlacedShape& shape = geometry.shapes()[hit.shape];
         const bool is_back = is_unseen_back(shape, hit, ray.direction);
         const MaterialId material = shape.description.material;

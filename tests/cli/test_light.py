@@ -169,6 +169,14 @@ class Light(CliTest):
             self.assertIn("no lights", "".join(warnings))
             self.assertNotIn("walls", "".join(warnings))
 
+    def test_a_camera_on_a_wall_sees_the_room(self):
+        self.write("room.gltf", glowing_room(0))
+        arguments = ["render", "room.gltf", "-o", "out.exr", "--resolution", "24x24", "--spp", "4", "--progress", "none", "--camera"]
+        for z, least in ((0, 0.3), (1, 0.1)):
+            result = self.run_program(*arguments, f"eye 0,0,{z} target 0,0,-9 fov 60")
+            self.assertIn("walls keep", result.stderr)
+            self.assertGreater(self.mean(exr.read(self.folder / "out.exr").pixels["G"]), least)
+
     def test_the_camera_gets_none_in_a_medium(self):
         # The light that a medium sends to an eye beside a lamp is infinite.
         fog = 'MakeNamedMedium "fog" "string type" "homogeneous" "float scale" 0.1\nMediumInterface "" "fog"\nCamera'
