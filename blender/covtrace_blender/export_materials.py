@@ -260,11 +260,6 @@ class MaterialExporter(SumExporter):
     def _rough(self, node):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)
 
-    def _tell_thin_film(self, node):
-        """Warns of a film on glass."""
-        if self._film(node.inputs):
-            self.warn(f"material '{self.name}': Thin Film Thickness of '{node.name}' is not supported on glass and left out")
-
     def _glossy(self, node):
         return self._metal(self._value(node.inputs["Color"]), self._rough(node), None, self._scattering(node) + self._normal_map(node),
                            self._stretch_of(node))
@@ -283,10 +278,9 @@ class MaterialExporter(SumExporter):
             *self._roughness(self._rough(node), stretch), *rest])
 
     def _glass(self, node):
-        self._tell_thin_film(node)
         return self._clear(self._value(node.inputs["Color"]), self._value(node.inputs["Roughness"], True),
-                           self._plain(node.inputs["IOR"]), self._scattering(node) + self._normal_map(node),
-                           stretch=self._stretch_of(node))
+                           self._plain(node.inputs["IOR"]),
+                           self._film(node.inputs) + self._scattering(node) + self._normal_map(node), stretch=self._stretch_of(node))
 
     def _hair(self, node):
         """Principled Hair: pbrt's hair has the same model, Chiang's."""

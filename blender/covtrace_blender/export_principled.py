@@ -163,10 +163,9 @@ class PrincipledExporter(SubsurfaceExporter):
         def glass():
             if not is_white(self._specular_tint(get)):
                 self.warn(f"material '{self.name}': Principled's Specular Tint is not supported on glass and left out")
-            self._tell_thin_film(node)
             # Since Blender 4.0 the colour is that of two crossings.
             root = (lambda colour: np.sqrt(np.maximum(colour, 0)), "root") if "Transmission Weight" in get else ()
-            return self._clear(base, roughness, self._plain(get["IOR"]), self._scattering(node) + rest, *root,
+            return self._clear(base, roughness, self._plain(get["IOR"]), self._film(get) + self._scattering(node) + rest, *root,
                                stretch=stretch)
 
         parts = []

@@ -105,6 +105,7 @@ struct DielectricBsdf {
     /// several microfacets comes back; none: it is lost. See multiple_scattering.h.
     const CoatTable *from_outside = nullptr, *from_inside = nullptr;
     float table_row = 0;  ///< of both, for the mean roughness
+    ThinFilm film = {};   ///< over it, outside
 };
 /// A coat's reflectance in place of its index' Fresnel reflectance F: w (r + (1 - r) x), with r the
 /// reflectance at the normal, w the weight, and x = (F - F0) / (1 - F0), which grows from 0 at the
@@ -170,6 +171,7 @@ struct ThinDielectricBsdf {
     /// ConductorBsdf::white of a rough pane.
     const CoatTable* white = nullptr;
     float table_row = 0;  ///< of `white`, for the mean roughness
+    ThinFilm film = {};   ///< over one of the faces
 };
 /// The border between media, which lets everything pass.
 struct InterfaceBsdf {};

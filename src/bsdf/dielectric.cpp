@@ -1,6 +1,7 @@
 /// The border of a clear dielectric: reflection and refraction by a smooth surface or by GGX
 /// microfacets (Walter et al. 2007, "Microfacet models for refraction through rough surfaces").
-/// Reflection is chosen with the probability of Fresnel's reflectance.
+/// Reflection is chosen with the probability of Fresnel's reflectance, under a film of the mean of
+/// its channels.
 ///
 /// Everything is computed as seen from wo's side: wo.z > 0 and eta = index of the far side over
 /// that of wo's side.
@@ -18,9 +19,17 @@ struct Microfacet {
     float eta = 1;
     bool reflects = true;
     Vec3 m;
-    float fresnel = 0;
+    ReflectedShare reflected;
     float half_length2 = 0;  ///< |eta wi + wo|^2, for refraction
 };
+
+/// The share that facets reflect of light with the cosine `cos_o` to them on wo's side; `f`: their
+/// reflectance and the refracted cosine, without a film.
+ReflectedShare reflected_share(const DielectricBsdf& b, bool below, float cos_o,
+                               const DielectricFresnel& f) {
+    return reflected_share(b.film, below ? f.cos_t : cos_o, sqr((b.eta - 1) / (b.eta + 1)),
+                           f.reflectance);
+}
 
 /// The microfacet that connects a pair; empty where none does.
 std::optional<Microfacet> connect(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
@@ -36,7 +45,7 @@ std::optional<Microfacet> connect(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     f.m = half / std::copysign(std::sqrt(f.half_length2), half.z);
     const float cos_o = dot(f.wo, f.m), cos_i = dot(f.wi, f.m);
     if (!(cos_o > 0) || !(f.reflects ? cos_i > 0 : cos_i < 0)) return {};
-    f.fresnel = fresnel_dielectric(cos_o, f.eta).reflectance;
+    f.reflected = reflected_share(b, wo.z < 0, cos_o, fresnel_dielectric(cos_o, f.eta));
     return f;
 }
 
@@ -52,19 +61,19 @@ Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     const Ggx ggx{b.alpha_x, b.alpha_y};
     const float d_g =
         gain(b, wo) * ggx.d(f->m) * ggx.g2_over_cos_o(f->wo, f->reflects ? f->wi : mirror_z(f->wi));
-    if (f->reflects) return Rgb(0.25f * f->fresnel * d_g);
+    if (f->reflects) return 0.25f * f->reflected.share * d_g;
     // Refraction is equation 21 of Walter et al. 2007, with |eta wi + wo|^2 for the denominator and
     // its 1 / eta^2 for radiance.
-    return b.transmittance * ((1 - f->fresnel) * d_g *
-                              std::abs(dot(f->wo, f->m) * dot(f->wi, f->m)) / f->half_length2);
+    return b.transmittance * ((Rgb(1) - f->reflected.share) * d_g *
+                              std::abs(dot(f->wo, f->m) * dot(f->wi, f->m)) / Rgb(f->half_length2));
 }
 
 float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     const std::optional<Microfacet> f = connect(b, wo, wi);
     if (!f) return 0;
     const Ggx ggx{b.alpha_x, b.alpha_y};
-    if (f->reflects) return f->fresnel * ggx.reflection_pdf(f->wo, f->m);
-    return (1 - f->fresnel) * ggx.visible_normal_pdf(f->wo, f->m) * sqr(f->eta) *
+    if (f->reflects) return f->reflected.chance * ggx.reflection_pdf(f->wo, f->m);
+    return (1 - f->reflected.chance) * ggx.visible_normal_pdf(f->wo, f->m) * sqr(f->eta) *
            std::abs(dot(f->wi, f->m)) / f->half_length2;
 }
 
@@ -76,13 +85,14 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
 
     if (is_specular(b)) {
         const DielectricFresnel f = fresnel_dielectric(wo.z, eta);
-        if (u_lobe < f.reflectance) {
+        const auto [share, chance] = reflected_share(b, below, wo.z, f);
+        if (u_lobe < chance) {
             const Vec3 wi{-wo.x, -wo.y, below ? -wo.z : wo.z};
-            return BsdfSample{wi, Rgb(1), f.reflectance, LobeKind::specular_reflection};
+            return BsdfSample{wi, share / Rgb(chance), chance, LobeKind::specular_reflection};
         }
         const Vec3 wi{-wo.x / eta, -wo.y / eta, below ? f.cos_t : -f.cos_t};
-        return BsdfSample{wi, b.transmittance / sqr(eta), 1 - f.reflectance,
-                          LobeKind::specular_transmission, eta};
+        return BsdfSample{wi, b.transmittance / sqr(eta) * ((Rgb(1) - share) / Rgb(1 - chance)),
+                          1 - chance, LobeKind::specular_transmission, eta};
     }
 
     const Ggx ggx{b.alpha_x, b.alpha_y};
@@ -90,21 +100,24 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
     const float cos_o = dot(wo, m);
     if (!(cos_o > 0)) return {};
     const DielectricFresnel f = fresnel_dielectric(cos_o, eta);
-    if (u_lobe < f.reflectance) {
+    const auto [share, chance] = reflected_share(b, below, cos_o, f);
+    if (u_lobe < chance) {
         const Vec3 wi = normalize(m * (2 * cos_o) - wo);
         if (!(wi.z > 0)) return {};
-        return BsdfSample{below ? mirror_z(wi) : wi, Rgb(scale * ggx.g2_over_g1(wo, wi)),
-                          f.reflectance * ggx.reflection_pdf(wo, m), LobeKind::glossy_reflection};
+        return BsdfSample{below ? mirror_z(wi) : wi,
+                          share / Rgb(chance) * (scale * ggx.g2_over_g1(wo, wi)),
+                          chance * ggx.reflection_pdf(wo, m), LobeKind::glossy_reflection};
     }
     const Vec3 wi = normalize(m * (cos_o / eta - f.cos_t) - wo / eta);
     if (!(wi.z < 0)) return {};
     // The half vector's length is |eta wi + wo| = eta cos_t - cos_o up to sign, both along m.
     const float half_length2 = sqr(eta * f.cos_t - cos_o);
     const float density =
-        (1 - f.reflectance) * ggx.visible_normal_pdf(wo, m) * sqr(eta) * f.cos_t / half_length2;
+        (1 - chance) * ggx.visible_normal_pdf(wo, m) * sqr(eta) * f.cos_t / half_length2;
     if (!(density > 0) || !std::isfinite(density)) return {};
     return BsdfSample{below ? mirror_z(wi) : wi,
-                      b.transmittance * (scale * ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)),
+                      b.transmittance * ((Rgb(1) - share) / Rgb(1 - chance)) *
+                          (scale * ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)),
                       density, LobeKind::glossy_transmission, eta};
 }
 

@@ -3,18 +3,30 @@
 /// KHR_materials_transmission has it: the facets spread it as they spread what they reflect.
 ///
 /// A facet reflects the sum of what goes to and fro between both faces, R + (1 - R)^2 R + ... =
-/// 2R/(1 + R), with R Fresnel's reflectance of one face, and lets all else pass.
+/// 2R/(1 + R), with R Fresnel's reflectance of one face, and lets all else pass; one of the faces
+/// may have a film. Samples choose by the mean of the channels.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/models.h"
 #include "bsdf/multiple_scattering.h"
+#include "bsdf/thin_film.h"
 
 namespace covtrace {
 namespace {
 
-float reflectance_of_faces(const ThinDielectricBsdf& b, float cos_i) {
-    const float r = fresnel_dielectric(cos_i, b.eta).reflectance;
-    return 2 * r / (1 + r);
+/// The share of the light with the cosine `cosine` to a facet that both faces reflect together, the
+/// same from either side.
+ReflectedShare reflected_share(const ThinDielectricBsdf& b, float cosine) {
+    const float r = fresnel_dielectric(cosine, b.eta).reflectance;
+    if (!(b.film.weight > 0)) {
+        const float both = 2 * r / (1 + r);
+        return {Rgb(both), both};
+    }
+    if (r >= 1) return {Rgb(1), 1};
+    const Rgb covered = under_film(b.film, cosine, Rgb(sqr((b.eta - 1) / (b.eta + 1))), Rgb(r));
+    const Rgb through = Rgb(1) - covered;
+    const Rgb both = covered + through * through * r / (Rgb(1) - covered * r);
+    return {both, (both.r + both.g + both.b) / 3};
 }
 Vec3 to_upper_side(Vec3 w) {
     return {w.x, w.y, std::abs(w.z)};
@@ -33,11 +45,10 @@ BsdfValue eval_and_pdf(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi) {
     wi = to_upper_side(wi);
     const Ggx ggx{b.alpha_x, b.alpha_y};
     const Vec3 m = normalize(wo + wi);
-    const float reflected = reflectance_of_faces(b, dot(wo, m));
-    const float share = reflects ? reflected : 1 - reflected;
-    return {(gain(b, wo.z) * share * 0.25f * ggx.d(m) * ggx.g2_over_cos_o(wo, wi)) *
-                (reflects ? Rgb(1) : b.transmittance),
-            share * ggx.reflection_pdf(wo, m)};
+    const auto [share, chance] = reflected_share(b, dot(wo, m));
+    return {(reflects ? share : b.transmittance * (Rgb(1) - share)) *
+                (gain(b, wo.z) * 0.25f * ggx.d(m) * ggx.g2_over_cos_o(wo, wi)),
+            (reflects ? chance : 1 - chance) * ggx.reflection_pdf(wo, m)};
 }
 
 Rgb eval(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi) {
@@ -50,11 +61,12 @@ float pdf(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi) {
 
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
     if (is_specular(b)) {
-        const float reflected = reflectance_of_faces(b, std::abs(wo.z));
-        if (u_lobe < reflected)
+        const auto [share, chance] = reflected_share(b, std::abs(wo.z));
+        if (u_lobe < chance)
             return BsdfSample{
-                {-wo.x, -wo.y, wo.z}, Rgb(1), reflected, LobeKind::specular_reflection};
-        return BsdfSample{-wo, b.transmittance, 1 - reflected, LobeKind::specular_transmission};
+                {-wo.x, -wo.y, wo.z}, share / Rgb(chance), chance, LobeKind::specular_reflection};
+        return BsdfSample{-wo, b.transmittance * ((Rgb(1) - share) / Rgb(1 - chance)), 1 - chance,
+                          LobeKind::specular_transmission};
     }
     const bool below = wo.z < 0;
     wo = to_upper_side(wo);
@@ -64,12 +76,13 @@ std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_l
     if (!(cos_m > 0)) return {};
     const Vec3 wi = normalize(m * (2 * cos_m) - wo);
     if (!(wi.z > 0)) return {};
-    const float reflected = reflectance_of_faces(b, cos_m);
-    const bool reflects = u_lobe < reflected;
+    const auto [share, chance] = reflected_share(b, cos_m);
+    const bool reflects = u_lobe < chance;
     return BsdfSample{
         reflects == below ? mirror_z(wi) : wi,
-        (gain(b, wo.z) * ggx.g2_over_g1(wo, wi)) * (reflects ? Rgb(1) : b.transmittance),
-        (reflects ? reflected : 1 - reflected) * ggx.reflection_pdf(wo, m),
+        (reflects ? share / Rgb(chance) : b.transmittance * ((Rgb(1) - share) / Rgb(1 - chance))) *
+            (gain(b, wo.z) * ggx.g2_over_g1(wo, wi)),
+        (reflects ? chance : 1 - chance) * ggx.reflection_pdf(wo, m),
         reflects ? LobeKind::glossy_reflection : LobeKind::glossy_transmission};
 }
 

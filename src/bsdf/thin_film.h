@@ -27,4 +27,20 @@ inline Rgb under_film(const ThinFilm& film, float cos_i, Rgb base, Rgb bare) {
     return film.weight > 0 ? lerp(film.weight, bare, film_reflectance(film, cos_i, base)) : bare;
 }
 
+/// The share of light that a clear surface reflects, which lets the rest through.
+struct ReflectedShare {
+    Rgb share;
+    float chance = 0;  ///< probability that a sample is reflected
+};
+
+/// That of the border of a clear body. `cos_outside`: cosine of the light on the film's side, of
+/// which the share is the same in both directions; `normal`, `bare`: reflectance without the film
+/// at the normal and for this light, which is 1 where reflection is total.
+inline ReflectedShare reflected_share(const ThinFilm& film, float cos_outside, float normal,
+                                      float bare) {
+    if (!(film.weight > 0) || bare >= 1) return {Rgb(bare), bare};
+    const Rgb share = under_film(film, cos_outside, Rgb(normal), Rgb(bare));
+    return {share, (share.r + share.g + share.b) / 3};
+}
+
 }  // namespace covtrace

@@ -63,16 +63,13 @@ MaterialId MaterialBuilder::glass() {
         warn(
             "KHR_materials_specular: of a surface that transmits light, textures are left out and "
             "colours become their mean");
-    if (film_)
-        warn(
-            "KHR_materials_iridescence: of a surface that transmits light the colours of the film "
-            "are missing");
     if (!has_volume) {
         ThinDielectricMaterial pane{border_.mean_eta, base_};
         if (is_rough) {
             pane.u_roughness = widths_.u;
             pane.v_roughness = widths_.v;
         }
+        pane.film = film_;
         return add(pane);
     }
     DielectricMaterial m;
@@ -85,6 +82,7 @@ MaterialId MaterialBuilder::glass() {
     m.remap_roughness = false;
     m.multiple_scattering = true;
     m.transmittance = base_;
+    m.film = film_;
     return add(m);
 }
 

@@ -156,6 +156,7 @@ DielectricMaterial Builder::dielectric() {
     // The parameters are ours, not pbrt's: the colour of glass, as exporters of other models need
     // it, and Blender's "Multiscatter GGX".
     m.transmittance = textures.reflectance_or_none(p, "transmittance");
+    m.film = film();
     m.multiple_scattering = p.flag("multiplescattering", false);
     return m;
 }
@@ -361,8 +362,10 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
     } else if (type == "coatedconductor") {
         model = b.coated_conductor();
     } else if (type == "thindielectric") {
-        model = ThinDielectricMaterial{constant_index(b.p, "eta", 1.5f, context),
-                                       textures.reflectance_or_none(b.p, "transmittance")};
+        ThinDielectricMaterial pane{constant_index(b.p, "eta", 1.5f, context),
+                                    textures.reflectance_or_none(b.p, "transmittance")};
+        pane.film = b.film();
+        model = pane;
     } else if (type == "subsurface") {
         model = b.subsurface();
     } else if (type == "hair") {

@@ -48,6 +48,7 @@ struct DielectricMaterial {
     bool remap_roughness = true;
     bool multiple_scattering = false;  ///< as that of a metal
     TextureId transmittance = -1;      ///< multiplies light at each crossing of the border; none: 1
+    std::optional<ThinFilmDescription> film = {};  ///< on the border's outside
 };
 /// A diffuse base under a dielectric coat, a thin gap between them.
 struct CoatedDiffuseMaterial {
@@ -112,6 +113,7 @@ struct ThinDielectricMaterial {
     /// GGX widths of both faces together, which spread what passes as what they reflect; none: 0.
     TextureId u_roughness = -1, v_roughness = -1;
     static constexpr bool remap_roughness = false;
+    std::optional<ThinFilmDescription> film = {};  ///< over one of its faces
 };
 /// No surface at all: a border that only separates media.
 struct InterfaceMaterial {};

@@ -53,8 +53,9 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const Tables& tables) {
 
 Bsdf make(const DielectricMaterial& m, const Values& v, const Tables& tables) {
     const Vec2 alpha = v.alphas(m);
-    const DielectricBsdf b{refractive_index(m.eta), alpha.x, alpha.y,
-                           m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
+    DielectricBsdf b{refractive_index(m.eta), alpha.x, alpha.y,
+                     m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
+    b.film = v.film(m.film);
     return m.multiple_scattering
                ? with_multiple_scattering(b, *tables.from_outside, *tables.from_inside)
                : b;
@@ -145,6 +146,7 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables& table
 Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Tables& tables) {
     ThinDielectricBsdf pane{refractive_index(m.eta),
                             m.transmittance < 0 ? Rgb(1) : v.transmittance()};
+    pane.film = v.film(m.film);
     if (!tables.white) return pane;
     const Vec2 alpha = v.alphas(m);
     pane.alpha_x = alpha.x;

@@ -28,7 +28,8 @@ bool is_constant(const TextureStore& t, const ConductorMaterial& m) {
            all_constant(t, {m.eta, m.k, m.reflectance, m.edge_tint, m.u_roughness, m.v_roughness});
 }
 bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
-    return all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
+    return is_constant(t, m.film) &&
+           all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
 }
 bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
     return is_constant(t, m.film) && all_constant(t, {m.reflectance, m.u_roughness, m.v_roughness,
@@ -46,7 +47,8 @@ bool is_constant(const TextureStore& t, const CoatedConductorMaterial& m) {
            all_constant(t, {m.u_roughness, m.v_roughness, m.thickness});
 }
 bool is_constant(const TextureStore& t, const ThinDielectricMaterial& m) {
-    return all_constant(t, {m.transmittance, m.u_roughness, m.v_roughness});
+    return is_constant(t, m.film) &&
+           all_constant(t, {m.transmittance, m.u_roughness, m.v_roughness});
 }
 bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;

@@ -77,6 +77,12 @@ CoatedConductorBsdf coated_metal(float coat_x, float coat_y, float metal_x, floa
     return b;
 }
 
+ThinDielectricBsdf filmed_pane(float alpha) {
+    ThinDielectricBsdf b{1.5f, Rgb(0.9f), alpha, alpha};
+    b.film = {0.9f, 2, 300};
+    return b;
+}
+
 SubsurfaceBsdf wax(float alpha_x, float alpha_y, bool is_left, bool refracts = true) {
     SubsurfaceBsdf b;
     b.border = make_coated_total(coat(), {0.7f, 0.5f, 0}, alpha_x, alpha_y);
@@ -138,6 +144,8 @@ std::vector<Case> all_cases() {
         {"frosted", DielectricBsdf{1.5f, 0.2f, 0.2f}},
         {"frosted_fine", DielectricBsdf{1.5f, 0.01f, 0.01f}},
         {"frosted_brushed", DielectricBsdf{1.33f, 0.1f, 0.6f}},
+        {"filmed_frosted",
+         DielectricBsdf{.alpha_x = 0.2f, .alpha_y = 0.2f, .film = {0.9f, 1.8f, 350}}},
         {"bubble", DielectricBsdf{1 / 1.5f, 0.4f, 0.4f}},
         {"nearly_matched", DielectricBsdf{1.001f, 0.3f, 0.3f}},
         {"varnish", make_coated_diffuse(coat(), reflectance_powers(tan), 0, 0, 5)},
@@ -160,6 +168,8 @@ std::vector<Case> all_cases() {
         {"pane_brushed", ThinDielectricBsdf{1.5f, Rgb(0.9f), 0.05f, 0.4f}},
         {"pane_bouncing",
          with_multiple_scattering(ThinDielectricBsdf{1.5f, Rgb(0.9f), 0.6f, 0.6f}, white())},
+        {"filmed_pane", filmed_pane(0)},
+        {"filmed_rough_pane", filmed_pane(0.3f)},
         {"interface", InterfaceBsdf{}},
         {"unlit", UnlitBsdf{tan, true}},
         {"wax", wax(0, 0, false)},
@@ -318,11 +328,14 @@ TEST_P(BsdfLaws, GivesOutNoMoreEnergyThanArrives) {
     for (float cos_o : {1.0f, 0.7f, 0.3f, 0.05f, -0.05f, -0.4f, -1.0f}) {
         const Vec3 wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
         constexpr int kSide = 60;
+        constexpr float kGolden = 0.61803399f;  // spreads numbers evenly
         double sum[3] = {0, 0, 0};
         for (int i = 0; i < kSide * kSide; ++i) {
             const Vec2 u{(static_cast<float>(i % kSide) + rng.next_float()) / kSide,
                          (static_cast<float>(i / kSide) + rng.next_float()) / kSide};
-            const auto s = sample(bsdf, wo, rng.next_float(), u);
+            // The choice is spread evenly, as both of it have weights where borders have colours.
+            const float turn = static_cast<float>(i) * kGolden;
+            const auto s = sample(bsdf, wo, turn - std::floor(turn), u);
             if (!s) continue;
             // The radiance factor of transmission is undone, so that this is energy.
             for (int c = 0; c < 3; ++c) sum[c] += s->weight[c] * sqr(s->eta);
@@ -389,9 +402,9 @@ TEST(BsdfSpecular, ModelsWithoutOtherLobesNeverEvaluate) {
             EXPECT_TRUE(is_specular(s->lobe)) << c.name;
         }
     }
-    // The models are mirror, tinted_mirror, glass, no_border, lacquer_on_mirror, pane, interface,
-    // unlit, wax and clear_on_mirror.
-    EXPECT_EQ(models, 10);
+    // The models are mirror, tinted_mirror, glass, no_border, lacquer_on_mirror, pane, filmed_pane,
+    // interface, unlit, wax and clear_on_mirror.
+    EXPECT_EQ(models, 11);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <complex>
 
-#include "bsdf/fresnel.h"
+#include "bsdf/models.h"
 
 namespace covtrace::test {
 namespace {
@@ -100,6 +100,45 @@ TEST(ThinFilm, OfTheSurfacesIndexAndThickHasNoColour) {
     const Rgb found = film_reflectance({1, 1.5f, 20000}, 1, Rgb(at_normal(2.5f)));
     const float r = at_normal(1.5f), s = at_normal(2.5f / 1.5f);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], r + sqr(1 - r) * s / (1 - r * s), 1e-3f);
+}
+
+/// The shares of light from `wo` that a clear surface reflects and lets through, by samples of
+/// both.
+std::array<Rgb, 2> shares(const Bsdf& bsdf, Vec3 wo) {
+    std::array<Rgb, 2> found;
+    for (const float u_lobe : {0.0f, 0x1.fffffep-1f})
+        if (const auto s = sample(bsdf, wo, u_lobe, {0.5f, 0.5f}))
+            found[is_transmission(s->lobe)] += s->weight * (s->pdf * sqr(s->eta));
+    return found;
+}
+
+TEST(ThinFilm, OfClearGlassReflectsWhatDoesNotComeThrough) {
+    const ThinFilm film{1, 1.8f, 350};
+    DielectricBsdf glass{1.5f};
+    glass.film = film;
+    for (const float cosine : {1.0f, 0.7f, 0.2f}) {
+        const float sine = std::sqrt(1 - sqr(cosine));
+        const Rgb expected = film_reflectance(film, cosine, Rgb(at_normal(1.5f)));
+        const auto outside = shares(glass, {sine, 0, cosine});
+        // The same way back
+        const float inner = sine / 1.5f;
+        const auto inside = shares(glass, {inner, 0, -std::sqrt(1 - sqr(inner))});
+        ThinDielectricBsdf sheet{1, Rgb(1)};
+        sheet.film = film;
+        const auto pane = shares(sheet, {sine, 0, cosine});
+        const Rgb alone = film_reflectance(film, cosine, Rgb(0));
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_NEAR(outside[0][k], expected[k], 1e-5f);
+            EXPECT_NEAR(outside[1][k], 1 - expected[k], 1e-5f);
+            EXPECT_NEAR(inside[0][k], expected[k], 1e-4f);
+            EXPECT_NEAR(inside[1][k], 1 - expected[k], 1e-4f);
+            EXPECT_NEAR(pane[0][k], alone[k], 1e-5f) << "a film in the air";
+            EXPECT_NEAR(pane[1][k], 1 - alone[k], 1e-5f);
+        }
+    }
+    const auto total = sample(glass, {0.8f, 0, -0.6f}, 0.9f, {0.5f, 0.5f});
+    EXPECT_EQ(total->lobe, LobeKind::specular_reflection);
+    EXPECT_EQ(total->weight, Rgb(1));
 }
 
 TEST(ThinFilm, ReflectsAtMostAllAndNothingThatIsNoNumber) {

@@ -10,12 +10,13 @@ namespace {
 const std::string kImage = "any bytes: images are decoded by what renders them";
 
 /// The square with one material of some extensions that is no metal, and one texture.
-SceneDescription with_extensions(const json& extensions) {
+SceneDescription with_extensions(const json& extensions, float roughness = 1) {
     GltfFile file;
     file.root["images"] = {{{"bufferView", file.add_view(kImage)}, {"mimeType", "image/png"}}};
     file.root["textures"] = {{{"source", 0}}};
     file.root["materials"] = {
-        {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}, {"extensions", extensions}}};
+        {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", roughness}}},
+         {"extensions", extensions}}};
     file.add_node({{"mesh", file.add_square({{"material", 0}})}});
     return read(file);
 }
@@ -83,11 +84,17 @@ TEST(GltfBorder, FilmsKeepTheirNumbersAndTextures) {
               ImageTexture::Channel::green);
 }
 
-TEST(GltfBorder, FilmsOfWhatTransmitsLightAreTold) {
-    const auto scene =
-        with_extensions({{"KHR_materials_iridescence", {{"iridescenceFactor", 1}}},
-                         {"KHR_materials_transmission", {{"transmissionFactor", 1}}}});
-    EXPECT_TRUE(contains(all_warnings(scene), "the colours of the film are missing"));
+TEST(GltfBorder, WhatTransmitsLightKeepsItsFilm) {
+    const auto film = [](const auto& material) { return material.film.value().eta; };
+    json extensions{
+        {"KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceIor", 1.8}}},
+        {"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
+    const auto border = with_extensions(extensions);  // rough, so that it is no pane
+    EXPECT_EQ(film(model_of<DielectricMaterial>(border, border.shapes[0].material)), 1.8f);
+    EXPECT_FALSE(contains(all_warnings(border), "iridescence"));
+    const auto pane = with_extensions(extensions, 0);
+    EXPECT_EQ(film(model_of<ThinDielectricMaterial>(pane, pane.shapes[0].material)), 1.8f);
+    EXPECT_FALSE(contains(all_warnings(pane), "iridescence"));
 }
 
 TEST(GltfBorder, WhatTransmitsLightTakesTheMean) {

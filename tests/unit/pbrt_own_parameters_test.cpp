@@ -39,6 +39,15 @@ TEST(OwnParameters, EdgesOfMetals) {
     EXPECT_TRUE(made.scene.warnings.empty());
 }
 
+TEST(OwnParameters, FilmsOnClearGlass) {
+    const std::string film = " \"float filmthickness\" 350 \"float filmeta\" 1.8";
+    const auto of = [](const auto& m) { return m.film.value().eta; };
+    EXPECT_EQ(of(model_of<DielectricMaterial>("\"dielectric\"" + film)), 1.8f);
+    EXPECT_EQ(of(model_of<ThinDielectricMaterial>("\"thindielectric\"" + film)), 1.8f);
+    EXPECT_FALSE(model_of<DielectricMaterial>("\"dielectric\"").film);
+    EXPECT_TRUE(material_of("\"dielectric\"" + film).scene.warnings.empty());
+}
+
 TEST(OwnParameters, ClearCoats) {
     const auto made = material_of(
         "\"diffuse\" \"float coat\" .6 \"float coatroughness\" .04 \"float coateta\" 1.7\n"
