@@ -9,7 +9,7 @@ from .baked import Baked, BakedImage, Layout
 from .body_baking import bake_body
 from .parts import PART, by_parts
 from .shader_nodes.evaluator import evaluated
-from .shader_nodes.place import UvPlace
+from .shader_nodes.place import RANDOMS, STRANDS, UvPlace
 
 SMALLEST, LARGEST = 512, 2048  # pixels along a side
 PROBES = 256
@@ -41,6 +41,8 @@ class Surface:
         return self.body.key(kinds) if self.body else repr(self.ranges)
 
     def range(self, uv_map):
+        if uv_map == STRANDS:
+            return np.zeros(2), np.array((1.0, RANDOMS))
         found = self.ranges.get(uv_map, self.ranges.get("", ((0, 0), (1, 1))))
         return np.array(found[0], float), np.array(found[1], float)
 

@@ -23,6 +23,7 @@ from .owner import Owner, asks_for_random, random_of
 from .part import Part, write_parts
 from .photometric_images import PhotometricImages
 from .placement import is_same, placement
+from .shader_nodes.place import STRANDS
 from .shadow_catchers import BARE, BEHIND, CAUGHT
 from .solid import Box, Solid
 from .texel_density import Placements
@@ -271,12 +272,12 @@ class SceneExporter(Instances):
     def _export_strands(self, obj):
         """The same of its hair."""
         is_render = self.depsgraph.mode == "RENDER"
-        return [part for slot, points, radii in export_strands.particle_systems(obj, is_render)
-                for part in self._strands_parts(obj, slot, [(points, radii)])]
+        return [part for slot, *strands in export_strands.particle_systems(obj, is_render)
+                for part in self._strands_parts(obj, slot, [strands])]
 
     def _strands_parts(self, obj, slot, strands):
-        variants = self._variants(obj, slot, None)
-        if self._uv_maps(variants):
+        variants = self._variants(obj, slot, None, is_strand=True)
+        if set(self._uv_maps(variants)) - {STRANDS}:
             self.warn(f"object '{obj.name}': strands have no texture coordinates; their images lie along and around them")
         return [part for sides, *tubes in export_strands.meshes(strands, lambda *s: self.placements.across(obj, *s))
                 for part in self._parts(variants, *tubes, tube_sides=sides)]
@@ -300,7 +301,7 @@ class SceneExporter(Instances):
         """The names of the UV maps that they read."""
         return tuple(dict.fromkeys(name for variant in variants for name in variant.uv_maps))
 
-    def _variants(self, obj, slot, mesh):
+    def _variants(self, obj, slot, mesh, is_strand=False):
         """The Variants of a slot's material, as it is on the object's mesh; None: on its strands, which have no places on a body
         and no UV map, so that they are as anywhere."""
         materials = self._materials(obj)
@@ -318,7 +319,7 @@ class SceneExporter(Instances):
         def space():
             return VolumeSpace(*export_meshes.box(mesh), texture_space(mesh), self.placements.only_matrix(obj), most=self.most_places)
 
-        owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj))
+        owner = Owner(obj, material, self.random, self.placements.only_matrix(obj), self.placements.scale(obj), is_strand)
         return self.materials.variants(material, (*Placements.key(obj), mesh is None, self.random), surface_of, owner)
 
     def _body(self, obj, mesh, material):

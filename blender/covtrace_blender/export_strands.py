@@ -9,10 +9,12 @@ import math
 
 import numpy as np
 
+from .shader_nodes.hashing import hashed
+from .shader_nodes.place import RANDOMS
+
 FLAT_SIDES, SMOOTH_SIDES = 6, 24
 MOST_FLAT = 3  # pixels across strands up to which they have flat sides
 TURN = 2 / (1 + math.sqrt(5))  # of sides, from strand to strand: the golden ratio fills them evenly
-
 
 # Cycles' for hair curves that have none.
 DEFAULT_RADIUS = 0.005
@@ -22,9 +24,24 @@ def _unit(v):
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-30)
 
 
-def tubes(points, radii, is_flat):
-    """(positions, normals, uvs, triangles) of strands with equally many points: points (strands, n, 3), radii (strands, n). u runs
-    along them, v around. Flat ones have None for normals."""
+def _places(points, randoms, count):
+    """(strands, n, count + 1, 2) of STRANDS: u by the length along them."""
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    reached = np.concatenate((np.zeros((len(points), 1)), steps.cumsum(axis=1)), axis=1)
+    uvs = np.empty((*reached.shape, count + 1, 2))
+    uvs[..., 0] = (reached / np.maximum(reached[:, -1:], 1e-30))[..., None]
+    uvs[..., 1] = (np.floor((RANDOMS - 1e-9) * randoms)[:, None] + np.linspace(0, 1, count + 1))[:, None]
+    return uvs
+
+
+def _randoms(numbers):
+    """Cycles' random numbers of the strands of these numbers."""
+    return hashed(np.asarray(numbers, np.uint32), np.uint32(0)) / float(0xFFFFFFFF)
+
+
+def tubes(points, radii, numbers, is_flat):
+    """(positions, normals, uvs, triangles) of strands with equally many points: points (strands, n, 3), radii (strands, n), numbers
+    (strands,) within their object. uvs are those of STRANDS. Flat ones have None for normals."""
     strands, n, _ = points.shape
     count = FLAT_SIDES if is_flat else SMOOTH_SIDES
     along = _unit(np.gradient(points, axis=1))
@@ -44,9 +61,7 @@ def tubes(points, radii, is_flat):
     corner = np.arange(strands * n * (count + 1)).reshape(strands, n, count + 1)
     a, b = corner[:, :-1, :-1], corner[:, :-1, 1:]
     c, d = corner[:, 1:, :-1], corner[:, 1:, 1:]
-    uvs = np.empty((strands, n, count + 1, 2))
-    uvs[..., 0], uvs[..., 1] = np.linspace(0, 1, n)[:, None], np.linspace(0, 1, count + 1)
-    uvs = uvs.reshape(-1, 2)
+    uvs = _places(points, _randoms(numbers), count).reshape(-1, 2)
     triangles = np.concatenate([np.stack((a, b, d), -1).reshape(-1, 3), np.stack((a, d, c), -1).reshape(-1, 3)])
     if is_flat:
         return positions.reshape(-1, 3), None, uvs, triangles
@@ -59,18 +74,18 @@ def tubes(points, radii, is_flat):
 
 
 def meshes(groups, across):
-    """Yields (sides, positions, normals or None, uvs, triangles) of the tubes of several [(points, radii)]: all with flat sides, and
+    """Yields (sides, positions, normals or None, uvs, triangles) of the tubes of several [(points, radii, numbers)]: all with flat sides, and
     all others.
 
     across(points, radii): pixels across which each strand is seen.
     """
-    groups = [(points, radii, across(points, radii) <= MOST_FLAT) for points, radii in groups]
+    groups = [(points, radii, numbers, across(points, radii) <= MOST_FLAT) for points, radii, numbers in groups]
     for is_flat in (True, False):
         found, first = [], 0
-        for points, radii, are_flat in groups:
+        for points, radii, numbers, are_flat in groups:
             chosen = are_flat == is_flat
             if chosen.any():
-                positions, normals, uvs, triangles = tubes(points[chosen], radii[chosen], is_flat)
+                positions, normals, uvs, triangles = tubes(points[chosen], radii[chosen], numbers[chosen], is_flat)
                 found.append((positions, normals, uvs, triangles + first))
                 first += len(positions)
         if found:
@@ -91,7 +106,8 @@ def _radii(settings, n):
 
 
 def particle_systems(obj, is_render):
-    """Yields (material slot, points, radii) in object space of each system of strands of an evaluated object."""
+    """Yields (material slot, points, radii, numbers) in object space of each system of strands of an evaluated object."""
+    before = 0
     to_object = np.array(obj.matrix_world.inverted_safe())
     shown = [m.particle_system for m in obj.modifiers
              if m.type == "PARTICLE_SYSTEM" and (m.show_render if is_render else m.show_viewport)]
@@ -110,11 +126,12 @@ def particle_systems(obj, is_render):
         points = points[np.abs(points - points[:, :1]).max((1, 2)) > 0]
         if len(points):
             points = points @ to_object[:3, :3].T + to_object[:3, 3]
-            yield settings.material - 1, points, np.broadcast_to(_radii(settings, n), points.shape[:2])
+            yield settings.material - 1, points, np.broadcast_to(_radii(settings, n), points.shape[:2]), before + np.arange(len(points))
+            before += len(points)
 
 
 def hair_curves(data):
-    """[(points, radii)] in object space of a hair curves object's data, those with equally many points together."""
+    """[(points, radii, numbers)] in object space of a hair curves object's data, those with equally many points together."""
     points = np.empty(3 * len(data.points), dtype=np.float32)
     data.position_data.foreach_get("vector", points)
     radii = np.full(len(data.points), DEFAULT_RADIUS, dtype=np.float32)
@@ -126,6 +143,7 @@ def hair_curves(data):
     points = points.reshape(-1, 3)
     groups = []
     for n in np.unique(count[count > 1]):
-        rows = first[count == n][:, None] + np.arange(n)
-        groups.append((points[rows].astype(float), radii[rows].astype(float)))
+        numbers = np.flatnonzero(count == n)
+        rows = first[numbers][:, None] + np.arange(n)
+        groups.append((points[rows].astype(float), radii[rows].astype(float), numbers))
     return groups

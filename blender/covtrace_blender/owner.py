@@ -5,6 +5,7 @@ import functools
 import numpy as np
 
 from .node_signature import all_nodes
+from .shader_nodes.coordinates import IS_STRAND
 from .shader_nodes.hashing import hashed
 
 # Values of Random that are told apart: each makes a material of its own and, of instances, a mesh of its own.
@@ -14,11 +15,13 @@ RANGE = 1 << 32  # of Blender's random numbers
 
 class Owner:
     """All that Object Info tells of an evaluated object and the material on it. random: in [0, 1]; matrix: 4x4 from the object to the
-    world, None where there is none that is the only one. scale: the mean one in the world, of which Object Info tells nothing."""
+    world, None where there is none that is the only one. scale: the mean one in the world, of which Object Info tells nothing. is_strand:
+    whether it is on the strands of the object, of which Curves Info tells."""
 
-    def __init__(self, obj=None, material=None, random=0.5, matrix=None, scale=1.0):
+    def __init__(self, obj=None, material=None, random=0.5, matrix=None, scale=1.0, is_strand=False):
         self.scale, self._object = scale, obj
-        self._values = {"Random": random, "Color": (1.0, 1.0, 1.0), "Alpha": 1.0, "Object Index": 0.0, "Material Index": 0.0}
+        self._values = {"Random": random, "Color": (1.0, 1.0, 1.0), "Alpha": 1.0, "Object Index": 0.0, "Material Index": 0.0,
+                        IS_STRAND: float(is_strand)}
         if obj is not None:
             self._values.update({"Color": tuple(obj.color)[:3], "Alpha": obj.color[3], "Object Index": float(obj.pass_index),
                                  "Material Index": float(material.pass_index) if material else 0.0})
@@ -63,9 +66,10 @@ def _attribute(obj, name):
 
 
 def asked_of_owner(nodes):
-    """Names of outputs of Object Info, and ("OBJECT", name) of attributes, that nodes ask for."""
+    """Names of outputs of Object Info, ("OBJECT", name) of attributes, and IS_STRAND, that nodes ask for."""
     return {output.name for node in nodes if node.type == "OBJECT_INFO" for output in node.outputs if output.is_linked} | {
-        ("OBJECT", node.attribute_name) for node in nodes if node.type == "ATTRIBUTE" and node.attribute_type == "OBJECT"}
+        ("OBJECT", node.attribute_name) for node in nodes if node.type == "ATTRIBUTE" and node.attribute_type == "OBJECT"} | {
+        IS_STRAND for node in nodes if node.type == "HAIR_INFO"}
 
 
 def asks_for_random(material):

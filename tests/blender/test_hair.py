@@ -4,6 +4,7 @@ import math
 import unittest
 
 import bpy
+import numpy as np
 from addon_support import BlenderTest, CyclesTest, mean, render
 from mathutils import Vector
 
@@ -46,6 +47,40 @@ class HairTest(BlenderTest):
             self.set(kind, inputs)
             with self.subTest(kind):
                 self.expect_as_bright(64)
+
+    def test_curves_info_tells_of_strands(self):
+        """Colours by the place along strands and by the strand, and those of the mesh that they are on."""
+        m = bpy.data.materials.new("by place")
+        m.use_nodes = True
+        tree = m.node_tree
+        info, matt, both = (tree.nodes.new("ShaderNode" + kind) for kind in ("HairInfo", "BsdfDiffuse", "CombineXYZ"))
+        outputs = {output.identifier: output for output in info.outputs}
+        for identifier, component in (("Intercept", "X"), ("Random", "Y"), ("Is Strand", "Z")):
+            tree.links.new(outputs[identifier], both.inputs[component])
+        tree.links.new(both.outputs[0], matt.inputs["Color"])
+        tree.links.new(matt.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.sheet.data.materials[0] = m
+        settings = self.sheet.particle_systems[0].settings
+        settings.count, settings.radius_scale = 40, 0.1
+        self.camera.location, self.camera.rotation_euler = (0, -4, 0.4), (1.5, 0, 0)
+        self.lamp("SUN", energy=3).rotation_euler = (1.2, 0, 0.3)
+        for kind in ("max", "diffuse"):
+            setattr(self.scene.cycles, f"{kind}_bounces", 0)
+        self.scene.covtrace.max_depth = 1
+        ours, theirs = ({c: np.array(image[f"Combined.{c}"]) for c in "RGB"} for image in (render("COVTRACE", 64), render("CYCLES", 64)))
+        shown = (ours["B"] > 0.1) & (theirs["B"] > 0.1)
+        self.assertGreater(shown.sum(), 50)
+        for channel in "RG":
+            a, b = (image[channel][shown] / image["B"][shown] for image in (ours, theirs))
+            self.assertGreater(np.std(b), 0.1)
+            self.assertLess(np.abs(a - b).mean(), 0.03, channel)
+        self.sheet.show_instancer_for_render = True  # black, as it is no strand
+        self.assertLess(mean(render("COVTRACE", 16))[2], 1.1 * ours["B"].mean())
+        self.export()
+        self.assertEqual([], self.warnings)
+        tree.links.new(outputs["Thickness"], both.inputs["Z"])
+        self.export()
+        self.assertTrue(any("its thickness has no counterpart" in w for w in self.warnings), self.warnings)
 
     def test_other_models_are_told(self):
         self.export()

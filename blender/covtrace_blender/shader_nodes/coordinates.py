@@ -4,7 +4,10 @@ import math
 
 import numpy as np
 
+from .place import RANDOMS, STRANDS
 from .unsupported import Unsupported
+
+IS_STRAND = "Is Strand"  # what an Owner says of strands
 
 
 def _texture_coordinates(node, output, inputs):
@@ -124,6 +127,20 @@ def _object_info(node, output, inputs):
     return found
 
 
+def _curves_info(node, output, inputs):
+    """The place along strands and a random number of each; zero on all else, as in Cycles."""
+    owner, wanted = inputs.place.owner, output.identifier
+    if not (owner and owner.value(IS_STRAND)):
+        return np.zeros(3 if wanted == "Tangent Normal" else (), np.float32)
+    if wanted == "Is Strand":
+        return np.float32(1)
+    if wanted not in ("Intercept", "Random"):
+        raise Unsupported(node, f"its {wanted.lower()} has no counterpart")
+    uv = inputs.place.uv_of(node, STRANDS)
+    return uv[:, 0] if wanted == "Intercept" else uv[:, 1] / RANDOMS
+
+
 NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping, "VECTOR_ROTATE": _vector_rotate,
          "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute, "VOLUME_INFO": _volume_info,
+         "HAIR_INFO": _curves_info,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

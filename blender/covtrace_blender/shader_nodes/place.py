@@ -10,6 +10,11 @@ import numpy as np
 from .sight import COSINES
 from .unsupported import NeedsBody, Unsupported
 
+# The name of the UV map that strands have: u in [0, 1] along them, v around them from the whole number below RANDOMS times their random
+# number. What is added to a random number is below 1 / RANDOMS, and turns of images about strands stay whole.
+STRANDS = "\0strands"
+RANDOMS = 256
+
 
 class _Place:
     def __init__(self, pixels_of, ray, owner):
