@@ -23,6 +23,12 @@ void warn_of_darkness(double dark) {
         100 * dark);
 }
 
+void warn_of_nothing(const std::string& view) {
+    say("warning: the camera sees nothing, no surface and no light; all shapes are seen by "
+        "--camera '{}'\n",
+        view);
+}
+
 void warn_of_replaced(const Image& image) {
     if (const auto replaced = replaced_pixels(image.metadata))
         say("warning: {}\n", describe(*replaced));

@@ -1,6 +1,8 @@
 /// Warnings of samples and pixels that are no finite numbers.
 #pragma once
 
+#include <string>
+
 #include "image/image.h"
 #include "render/session.h"
 
@@ -10,6 +12,8 @@ namespace covtrace::cli {
 void warn_of_rejected(const RenderStatistics& statistics);
 /// Warns where light does not reach most of what an image shows, of which the share `dark` is dark.
 void warn_of_darkness(double dark);
+/// Warns of an image that shows nothing. `view`: view_of_all of the scene, where that is not empty.
+void warn_of_nothing(const std::string& view);
 /// Warns of pixels that were replaced when the image was made.
 void warn_of_replaced(const Image& image);
 

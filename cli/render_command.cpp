@@ -38,6 +38,7 @@
 #include "render/layers.h"
 #include "render/render_memory.h"
 #include "render/session.h"
+#include "scene/framing.h"
 
 namespace covtrace::cli {
 
@@ -174,9 +175,10 @@ void require_samples(const RenderResult& result, const Monitor& monitor) {
                     "interrupted before the first sample: nothing is written");
 }
 
-/// Tells what was rendered, and what went wrong with it. `dark`: dark_share of the image.
+/// Tells what was rendered, and what went wrong with it. `dark`: dark_share of the image;
+/// `other_view`: one that sees the scene, where the image shows nothing.
 void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs::path& output,
-                  double dark, const Monitor& monitor) {
+                  double dark, const std::string& other_view, const Monitor& monitor) {
     warn_of_rejected(result.statistics);
     warn_of_replaced(result.image);
     if (result.is_below_least)
@@ -185,6 +187,7 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
     if (a.quiet) return;
     warn_of_failed_denoiser(result.image);
     warn_of_darkness(dark);
+    if (!other_view.empty()) warn_of_nothing(other_view);
     say("{}: {:.4g} samples per pixel{} in {:.1f} s{}\n",
         a.film.shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
         result.statistics.density_factor
@@ -270,6 +273,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     result.statistics.seconds[Phase::build] = built - loaded;
     const double rendered = monitor.elapsed();
     const double dark = dark_share(result.image);
+    const std::string other_view =
+        !is_shard && shows_nothing(result.image) ? view_of_all(scene.description) : "";
     // Write the files and tell what was done
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
@@ -281,7 +286,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
-    tell_outcome(result, a, output, dark, monitor);
+    tell_outcome(result, a, output, dark, other_view, monitor);
     // A viewer that still takes the last image may do so; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));

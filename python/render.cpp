@@ -30,6 +30,7 @@
 #include "render/session.h"
 #include "scene/defaults.h"
 #include "scene/extent.h"
+#include "scene/framing.h"
 #include "scene/summary.h"
 #include "warning_texts.h"
 
@@ -171,6 +172,12 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     if (replaced) warnings.push_back({{}, describe(*replaced)});
     if (const double dark = dark_share(result.image); dark >= kMostlyDark)
         warnings.push_back({{}, darkness_text(dark)});
+    if (!is_shard && shows_nothing(result.image))
+        if (const std::string view = view_of_all(scene.description); !view.empty())
+            warnings.push_back({{},
+                                "the camera sees nothing, no surface and no light; all shapes are "
+                                "seen by camera=\"" +
+                                    view + "\""});
     if (!is_shard) select_layers(result.image, deliverables.layers, warnings);
     return {std::make_shared<Planes>(std::move(result.image)),
             std::move(result.statistics),

@@ -58,4 +58,12 @@ double dark_share(const Image& image) {
     return surfaces == 0 ? 0 : double(dark) / double(surfaces);
 }
 
+bool shows_nothing(const Image& image) {
+    const Channels light = layer(image, ""), albedo = layer(image, "albedo.");
+    if (!light[0] || !albedo[0]) return false;
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        if (luminance_at(light, i) > 0 || luminance_at(albedo, i) > 0) return false;
+    return true;
+}
+
 }  // namespace covtrace

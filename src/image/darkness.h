@@ -11,6 +11,10 @@ namespace covtrace {
 /// in view, and surfaces that are black themselves don't count.
 double dark_share(const Image& image);
 
+/// Whether an image shows nothing at all: it is black, and its layer "albedo" has no surface in view
+/// that is brighter than black. False without that layer.
+bool shows_nothing(const Image& image);
+
 /// From this share on an image is told to be dark.
 inline constexpr double kMostlyDark = 0.5;
 

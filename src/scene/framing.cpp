@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/extent.h"
+#include "scene/view_text.h"
 
 namespace covtrace {
 
@@ -82,6 +84,15 @@ bool frame_all(SceneDescription& scene) {
     scene.camera.fov = kFov;
     scene.camera.focal_distance = focus;
     return true;
+}
+
+std::string view_of_all(SceneDescription& scene) {
+    if (bounds(scene).empty()) return {};
+    CameraDescription own = scene.camera;
+    scene.camera = {};
+    const std::string text = frame_all(scene) ? view_text(scene) : "";
+    scene.camera = std::move(own);
+    return text;
 }
 
 bool is_framed(const SceneDescription& scene) {

@@ -1,6 +1,8 @@
 /// A camera for scenes that have none.
 #pragma once
 
+#include <string>
+
 #include "scene/scene_description.h"
 
 namespace covtrace {
@@ -11,6 +13,10 @@ namespace covtrace {
 /// their bounds. The camera is that of a right-handed world. Returns false, and changes nothing,
 /// where the scene is too large for single precision.
 [[nodiscard]] bool frame_all(SceneDescription& scene);
+
+/// The camera that `frame_all` makes, in words that `--camera` takes; the scene's own stays. Empty
+/// where there are no shapes, or `frame_all` makes none.
+std::string view_of_all(SceneDescription& scene);
 
 /// Whether the camera is one that a reader got from `frame_all`, and nobody has changed since.
 bool is_framed(const SceneDescription& scene);

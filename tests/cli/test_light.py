@@ -66,6 +66,17 @@ class Light(CliTest):
         for scene in (ROOM.replace("0 0 0  1 0.3 1", "0 0 9  0 0 99"), ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [.1 .1 .1]')):
             self.assertEqual(self.seen(scene=scene)[1], [])
 
+    def test_cameras_that_see_nothing_tell_another(self):
+        away = ROOM.replace("0 0 0  1 0.3 1", "0 0 -9  0 0 -99").replace('LightSource "infinite"', 'LightSource "point"')
+        self.assertIn("LookAt 0 0 -9  0 0 -99", away)
+        _, warnings = self.seen(scene=away)
+        self.assertEqual(len(warnings), 1, warnings)
+        self.assertIn("the camera sees nothing", warnings[0])
+        view = re.search("--camera '(.*)'", warnings[0])[1]
+        image, warnings = self.seen("--camera", view, scene=away)
+        self.assertFalse(any("sees nothing" in w for w in warnings), warnings)
+        self.assertGreater(max(image["albedo.G"]), 0)
+
     def test_a_dim_lamp_is_no_darkness(self):
         dim = ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [1e-5 1e-5 1e-5] "point3 from" [0 0 0] #')
         for method in ("uniform", "hybrid"):

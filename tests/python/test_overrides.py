@@ -54,6 +54,8 @@ Shape "sphere" "float radius" 3
         def mean(light):
             return covtrace.render(room, method="uniform", spp=4, light=light).rgb.mean((0, 1))
 
+        with self.assertWarnsRegex(covtrace.SceneWarning, 'the camera sees nothing.* by camera="eye '):
+            covtrace.render(room, method="uniform", spp=1, environment=0, camera="eye 0,0,9 target 0,0,99 fov 40")
         with self.assertWarnsRegex(covtrace.SceneWarning, '100 % of the surfaces in view are black.*light="camera"'):
             self.assertEqual(mean(None).max(), 0)
         direct = 0.5 / numpy.pi / (4 * numpy.pi * 9)
