@@ -40,7 +40,8 @@ def _texts(value):
 
 def _parameter(name, value):
     """One parameter as text. `name` may carry pbrt's type, "texture reflectance"; else the value
-    tells: a number, a text, a truth value, three numbers for a colour; a few names do, too."""
+    tells: a number, a text, a truth value, three numbers for a colour; a few names do, too, of
+    which some are colours that one number makes grey."""
     texts = _texts(value)
     if " " not in name and name in _TYPES and texts is None:
         name = f"{_TYPES[name]} {name}"
@@ -59,6 +60,8 @@ def _parameter(name, value):
         return f'"string {name}" {texts}'
     if isinstance(value, (int, numpy.integer)) and name in _INTEGERS:
         return f'"integer {name}" {int(value)}'
+    if isinstance(value, (int, float, numpy.number)) and name in _COLOURS:
+        return f'"rgb {name}" {_numbers([value] * 3)}'
     if isinstance(value, (int, float, numpy.number)):
         return f'"float {name}" {float(value)!r}'
     values = numpy.asarray(value, dtype=float)
@@ -69,6 +72,10 @@ def _parameter(name, value):
 
 _INTEGERS = {"degree", "dimension", "levels", "maxdepth", "nsamples", "pixelsamples", "splitdepth",
              "xresolution", "yresolution"}
+
+#: Parameters that are colours in every kind of light, material and medium that has them.
+_COLOURS = {"I", "L", "albedo", "color", "coattint", "edgetint", "mfp", "normalreflectance", "reflectance", "sheen", "sigma_a",
+            "sigma_s", "transmittance"}
 
 #: Types of parameters whose values are neither colours nor single numbers.
 _TYPES = {"from": "point3", "to": "point3", "P": "point3", "p0": "point3", "p1": "point3", "portal": "point3",
@@ -112,7 +119,7 @@ class SceneBuilder:
     >>> image = covtrace.render(scene, spp=16)
 
     Parameters of pbrt are keyword arguments. Their type follows from the value (a number, a text, a
-    truth value, three numbers for a colour); others are given with their type:
+    truth value, three numbers for a colour, of which one is grey); others are given with their type:
     `**{"spectrum eta": "metal-Cu-eta"}`, `**{"texture reflectance": "checks"}`.
     Transforms are 4x4 matrices for column vectors; `end_transform` is the one at the shutter's end.
     """

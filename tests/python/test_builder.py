@@ -32,6 +32,18 @@ class Builder(unittest.TestCase):
         self.assertAlmostEqual(centre_spread(0.0), 0.6 / width + 1.5 / 60, delta=2.5 / 60)
         self.assertAlmostEqual(centre_spread(2.0), 2.6 / width + 1.5 / 60, delta=2.5 / 60)
 
+    def test_one_number_is_a_grey_colour(self):
+        def render(*colour):
+            scene = covtrace.SceneBuilder()
+            scene.camera(eye=(0, 0, -5), target=(0, 0, 0), fov=40, resolution=(16, 16))
+            scene.light("infinite", L=colour[0])
+            scene.material("ball", "diffuse", reflectance=colour[1])
+            scene.shape("sphere", material="ball")
+            scene.mesh([[-1, 1, 2], [1, 1, 2], [0, 2, 2]], [[0, 1, 2]], emission=colour[2])
+            return covtrace.render(scene, method="uniform", spp=4).rgb
+
+        numpy.testing.assert_array_equal(render(2, 0.5, 3.0), render((2, 2, 2), (0.5,) * 3, (3, 3, 3)))
+
     def broken(self, break_it):
         """A scene with a ball, broken by a function; returns the scene and the place of the breaking call."""
         scene = covtrace.SceneBuilder()
