@@ -29,6 +29,13 @@ void warn_of_nothing(const std::string& view) {
         view);
 }
 
+void warn_of_overexposure(int stops, float exposure) {
+    if (stops == 0) return;
+    say("warning: --png: half of what has light is more than twice as bright as white; --exposure "
+        "{:g} shows it\n",
+        exposure - float(stops));
+}
+
 void warn_of_replaced(const Image& image) {
     if (const auto replaced = replaced_pixels(image.metadata))
         say("warning: {}\n", describe(*replaced));

@@ -175,10 +175,27 @@ void require_samples(const RenderResult& result, const Monitor& monitor) {
                     "interrupted before the first sample: nothing is written");
 }
 
-/// Tells what was rendered, and what went wrong with it. `dark`: dark_share of the image;
-/// `other_view`: one that sees the scene, where the image shows nothing.
+/// Faults of an image as a picture of its scene.
+struct PictureFaults {
+    double dark = 0;         ///< dark_share
+    std::string other_view;  ///< one that sees the scene, where this one sees nothing
+    int too_bright = 0;      ///< stops_too_bright, of pictures
+};
+
+PictureFaults faults_of(const RenderArguments& a, const fs::path& output, const Image& image,
+                        SceneDescription& scene) {
+    PictureFaults found;
+    found.dark = dark_share(image);
+    if (a.film.shard) return found;
+    if (shows_nothing(image)) found.other_view = view_of_all(scene);
+    if (!a.png.empty() || output.extension() == ".png")
+        found.too_bright = stops_too_bright(image, a.display.options);
+    return found;
+}
+
+/// Tells what was rendered, and what went wrong with it.
 void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs::path& output,
-                  double dark, const std::string& other_view, const Monitor& monitor) {
+                  const PictureFaults& faults, const Monitor& monitor) {
     warn_of_rejected(result.statistics);
     warn_of_replaced(result.image);
     if (result.is_below_least)
@@ -186,8 +203,9 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
             "needs\n");
     if (a.quiet) return;
     warn_of_failed_denoiser(result.image);
-    warn_of_darkness(dark);
-    if (!other_view.empty()) warn_of_nothing(other_view);
+    warn_of_darkness(faults.dark);
+    if (!faults.other_view.empty()) warn_of_nothing(faults.other_view);
+    warn_of_overexposure(faults.too_bright, a.display.exposure);
     say("{}: {:.4g} samples per pixel{} in {:.1f} s{}\n",
         a.film.shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
         result.statistics.density_factor
@@ -272,9 +290,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     result.statistics.seconds[Phase::load] = loaded;
     result.statistics.seconds[Phase::build] = built - loaded;
     const double rendered = monitor.elapsed();
-    const double dark = dark_share(result.image);
-    const std::string other_view =
-        !is_shard && shows_nothing(result.image) ? view_of_all(scene.description) : "";
+    const PictureFaults faults = faults_of(a, output, result.image, scene.description);
     // Write the files and tell what was done
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
@@ -286,7 +302,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
-    tell_outcome(result, a, output, dark, other_view, monitor);
+    tell_outcome(result, a, output, faults, monitor);
     // A viewer that still takes the last image may do so; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "image/color_encoding.h"
@@ -112,6 +113,22 @@ std::array<uint8_t, 3> display_8bit(Rgb linear, const DisplayOptions& options) {
             return to_8bit(agx(c));
     }
     return {srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b)};
+}
+
+int stops_too_bright(const Image& image, const DisplayOptions& options) {
+    constexpr float kTooBright = 2, kGoal = 0.5f;
+    const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
+    if (!r || !g || !b || options.ocio || options.view != ViewTransform::srgb) return 0;
+    const float black = srgb_decode(1.0f / 255), gain = std::exp2(options.exposure);
+    std::vector<float> shown;
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        const float y = gain * luminance(Rgb(r->values[i], g->values[i], b->values[i]));
+        if (y > black && std::isfinite(y)) shown.push_back(y);
+    }
+    if (shown.empty() || 10 * shown.size() < image.pixel_count()) return 0;
+    const auto middle = shown.begin() + static_cast<std::ptrdiff_t>(shown.size() / 2);
+    std::nth_element(shown.begin(), middle, shown.end());
+    return *middle > kTooBright ? static_cast<int>(std::ceil(std::log2(*middle / kGoal))) : 0;
 }
 
 }  // namespace covtrace

@@ -42,6 +42,11 @@ DisplayOptions display_options(float exposure, const std::string& view, OcioChoi
 /// values and NaN count as 0.
 std::array<uint8_t, 3> display_8bit(Rgb linear, const DisplayOptions& options);
 
+/// Stops by which a picture of the root channels R, G, B is to be darkened, a whole number, so that
+/// half of the pixels that are not black have a luminance of at most 0.5. 0 where half of them are
+/// below 2, where they are less than a tenth of the picture, and in views that compress light.
+int stops_too_bright(const Image& image, const DisplayOptions& options);
+
 /// Writes a picture of the root channels R, G, B, or Y. Written beside and renamed. Throws as
 /// write_png of image.h, which shows it with the default options.
 void write_png(const Image& image, const std::filesystem::path& file,

@@ -77,6 +77,18 @@ class Light(CliTest):
         self.assertFalse(any("sees nothing" in w for w in warnings), warnings)
         self.assertGreater(max(image["albedo.G"]), 0)
 
+    def test_pictures_that_are_far_too_bright_tell_the_exposure(self):
+        bright = ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [900 900 900] "point3 from" [0 0 0] #')
+        picture = ("--png", str(self.folder / "out.png"))
+        image, warnings = self.seen(*picture, scene=bright)
+        self.assertEqual(len(warnings), 1, warnings)
+        stops = float(re.search("--exposure (-[0-9]+)", warnings[0])[1])
+        self.assertLess(sorted(image["G"])[len(image["G"]) // 2] * 2**stops, 0.5)
+        # Neither with that exposure, nor where no picture is cut, nor where it is not far beyond white
+        for arguments, scene in (((*picture, "--exposure", str(stops)), bright), ((), bright), ((*picture, "--view", "agx"), bright),
+                                 (picture, bright.replace("900 900 900", "90 90 90"))):
+            self.assertEqual(self.seen(*arguments, scene=scene)[1], [], arguments)
+
     def test_a_dim_lamp_is_no_darkness(self):
         dim = ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [1e-5 1e-5 1e-5] "point3 from" [0 0 0] #')
         for method in ("uniform", "hybrid"):
