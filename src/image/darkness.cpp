@@ -15,8 +15,9 @@ namespace {
 using Channels = std::array<const Channel*, 3>;
 
 /// The three channels of a layer, given with its dot; none where one is missing.
-Channels layer(const Image& image, const std::string& name) {
-    const Channels found{image.find(name + "R"), image.find(name + "G"), image.find(name + "B")};
+Channels layer(const Image& image, const std::string& name, const char (&letters)[4] = "RGB") {
+    const Channels found{image.find(name + letters[0]), image.find(name + letters[1]),
+                         image.find(name + letters[2])};
     return std::ranges::count(found, nullptr) == 0 ? found : Channels{};
 }
 
@@ -59,11 +60,12 @@ double dark_share(const Image& image) {
 }
 
 bool shows_nothing(const Image& image) {
-    const Channels light = layer(image, ""), albedo = layer(image, "albedo.");
-    if (!light[0] || !albedo[0]) return false;
-    for (size_t i = 0; i < image.pixel_count(); ++i)
-        if (luminance_at(light, i) > 0 || luminance_at(albedo, i) > 0) return false;
-    return true;
+    const Channels light = layer(image, ""), normal = layer(image, "N.", "XYZ");
+    if (!light[0] || !normal[0]) return false;
+    const auto is_zero = [](const Channel* c) {
+        return std::ranges::all_of(c->values, [](float v) { return v == 0; });
+    };
+    return std::ranges::all_of(light, is_zero) && std::ranges::all_of(normal, is_zero);
 }
 
 }  // namespace covtrace

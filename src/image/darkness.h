@@ -11,8 +11,8 @@ namespace covtrace {
 /// in view, and surfaces that are black themselves don't count.
 double dark_share(const Image& image);
 
-/// Whether an image shows nothing at all: it is black, and its layer "albedo" has no surface in view
-/// that is brighter than black. False without that layer.
+/// Whether an image shows nothing at all: it is black, and its layer "N" has no surface in view.
+/// False without that layer.
 bool shows_nothing(const Image& image);
 
 /// From this share on an image is told to be dark.

@@ -89,7 +89,9 @@ TEST(GltfBorder, WhatTransmitsLightKeepsItsFilm) {
     json extensions{
         {"KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceIor", 1.8}}},
         {"KHR_materials_transmission", {{"transmissionFactor", 1}}}};
-    const auto border = with_extensions(extensions);  // rough, so that it is no pane
+    json of_body = extensions;
+    of_body["KHR_materials_volume"] = {{"thicknessFactor", 1}};
+    const auto border = with_extensions(of_body);
     EXPECT_EQ(film(model_of<DielectricMaterial>(border, border.shapes[0].material)), 1.8f);
     EXPECT_FALSE(contains(all_warnings(border), "iridescence"));
     const auto pane = with_extensions(extensions, 0);
