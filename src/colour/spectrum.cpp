@@ -212,11 +212,12 @@ Spectrum blackbody_spectrum(double kelvin) {
 }
 
 Rgb blackbody_radiance(double kelvin) {
-    constexpr double kWien = 2.897771955e6;  // nm K
+    constexpr double kWien = 2.897771955e6;         // nm K
+    constexpr double kLuminanceOfOne = 106.856895;  // pbrt's integral of CIE's y, nm
     const double largest = log_planck(kWien / kelvin, kelvin);
     const auto light = [](double l) { return response().at(l); };
     const auto relative = [&](double l) { return std::exp(log_planck(l, kelvin) - largest); };
-    const double y = luminance_of(integral(pieces({}), light, relative)) /
+    const double y = kLuminanceOfOne * luminance_of(integral(pieces({}), light, relative)) /
                      luminance_of(integral(pieces({}), light, one));
     return emission_colour(blackbody_spectrum(kelvin)) * static_cast<float>(y);
 }

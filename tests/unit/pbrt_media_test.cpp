@@ -71,6 +71,24 @@ TEST(SceneMedia, ColouredGridsAreOfTheFilesColourSpace) {
     EXPECT_EQ(scene.media[0].sigma_a, scene.media[1].sigma_a);
 }
 
+TEST(SceneMedia, HotMediaAreAsBrightAsPbrts) {
+    // Means of 24x24 pixels of pbrt-v4, 256 samples each: an opaque ball of this
+    // temperature fills the picture, "Lescale" is 1 in each cell
+    struct Case {
+        const char* kelvin;
+        Rgb radiance;
+    };
+    for (const Case& c : {Case{"3000", {78.7201f, 37.5358f, 12.0992f}},
+                          Case{"5772", {114.467f, 100.3453f, 93.9264f}}}) {
+        const SceneDescription scene =
+            read_world(std::string("MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" ") +
+                       "\"float density\" 1 \"float temperature\" " + c.kelvin);
+        SCOPED_TRACE(c.kelvin);
+        expect_near(scene.media.at(0).glow->at({0.5f, 0.5f, 0.5f}), c.radiance,
+                    0.02f * max_component(c.radiance));
+    }
+}
+
 TEST(SceneMedia, LescaleIsAFactorOfHotMediaToo) {
     const std::string hot =
         "\"string type\" \"uniformgrid\" \"integer nx\" 2 \"float density\" [ 1 1 ] "
