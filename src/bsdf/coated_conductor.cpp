@@ -30,9 +30,6 @@
 namespace covtrace {
 namespace {
 
-Vec3 to_upper_side(Vec3 w) {
-    return {w.x, w.y, std::abs(w.z)};
-}
 bool is_smooth(const CoatedConductorBsdf& b) {
     return is_specular(b.coat);
 }

@@ -12,10 +12,6 @@ bool is_smooth(const CoatedDiffuseBsdf& b) {
     return b.eta == 1 || (b.alpha_x == 0 && b.alpha_y == 0);
 }
 
-Vec3 to_upper_side(Vec3 w) {
-    return {w.x, w.y, std::abs(w.z)};
-}
-
 /// Row of the tables for the coat's roughness towards w.
 float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
     if (b.alpha_x == b.alpha_y) return b.table_row;

@@ -10,9 +10,6 @@ namespace {
 bool is_smooth(const ConductorBsdf& b) {
     return b.alpha_x == 0 && b.alpha_y == 0;
 }
-Vec3 to_upper_side(Vec3 w) {
-    return {w.x, w.y, std::abs(w.z)};
-}
 
 }  // namespace
 

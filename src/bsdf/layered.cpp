@@ -27,10 +27,6 @@ namespace {
 
 constexpr float kUniformHemispherePdf = kInvPi / 2;
 
-Vec3 to_upper_side(Vec3 w) {
-    return {w.x, w.y, std::abs(w.z)};
-}
-
 /// Share of light with the given cosine that a full coat reflects.
 float coat_reflectance(const ClearcoatLobe& coat, float cosine) {
     if (coat.border) {

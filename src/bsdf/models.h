@@ -5,6 +5,8 @@
 /// overloads, constants all of them, are in bsdf.cpp.
 #pragma once
 
+#include <cmath>
+
 #include "bsdf/bsdf.h"
 #include "bsdf/fresnel.h"
 
@@ -117,6 +119,9 @@ inline bool same_side(Vec3 wo, Vec3 wi) {
 }
 inline Vec3 mirror_z(Vec3 w) {
     return {w.x, w.y, -w.z};
+}
+inline Vec3 to_upper_side(Vec3 w) {
+    return {w.x, w.y, std::abs(w.z)};
 }
 /// A cosine-distributed direction on the side of wo, with `transmit` on the other side.
 Vec3 sample_cosine(Vec3 wo, bool transmit, Vec2 u);

@@ -28,9 +28,6 @@ ReflectedShare reflected_share(const ThinDielectricBsdf& b, float cosine) {
     const Rgb both = covered + through * through * r / (Rgb(1) - covered * r);
     return {both, (both.r + both.g + both.b) / 3};
 }
-Vec3 to_upper_side(Vec3 w) {
-    return {w.x, w.y, std::abs(w.z)};
-}
 
 }  // namespace
 
