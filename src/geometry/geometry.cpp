@@ -97,6 +97,8 @@ bool lies_in(Vec3 point, const SurfaceHit& hit) {
 Geometry::Geometry(const SceneDescription& scene, const std::string& isa)
     : impl_(std::make_unique<Impl>(scene, isa)) {}
 Geometry::~Geometry() = default;
+Geometry::Geometry(Geometry&&) noexcept = default;
+Geometry& Geometry::operator=(Geometry&&) noexcept = default;
 
 void Geometry::set_alpha(AlphaLookup lookup) {
     impl_->alpha = std::move(lookup);

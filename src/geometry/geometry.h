@@ -59,8 +59,8 @@ class Geometry {
     /// Error(limit) where memory runs out.
     explicit Geometry(const SceneDescription& scene, const std::string& isa = {});
     ~Geometry();
-    Geometry(const Geometry&) = delete;
-    Geometry& operator=(const Geometry&) = delete;
+    Geometry(Geometry&&) noexcept;
+    Geometry& operator=(Geometry&&) noexcept;
 
     /// Sets the opacity of alpha textures; without it they count as opaque. `lookup` must be
     /// thread-safe.

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "integrator/displacement.h"
 #include "integrator/lamps.h"
+#include "integrator/open_walls.h"
 
 namespace covtrace {
 
@@ -66,7 +67,7 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     : description(std::move(scene_description)),
       textures(description, texture_bytes),
       geometry(displace(description, textures), isa),
-      lights(lit_description(), geometry, &textures),
+      lights(lit_description(isa), geometry, &textures),
       materials(description, textures,
                 description.adapts_colours ? IlluminantAdaptation(lights.total_power())
                                            : IlluminantAdaptation()),
@@ -93,10 +94,16 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
 }
 
-const SceneDescription& LitScene::lit_description() {
-    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position, const VertexPlace& vertices) {
+const SceneDescription& LitScene::lit_description(const std::string& isa) {
+    const AlphaLookup alpha = [this](TextureId id, Vec2 uv, Vec3 position,
+                                     const VertexPlace& vertices) {
         return textures.eval_float(id, {uv, position, {}, {}, vertices});
-    });
+    };
+    geometry.set_alpha(alpha);
+    if (open_walls(description, geometry, textures)) {
+        geometry = Geometry(description, isa);
+        geometry.set_alpha(alpha);
+    }
     return stand_lamps(description, geometry, textures);
 }
 

@@ -68,9 +68,9 @@ struct LitScene {
     std::function<bool()> is_interrupted;
 
   private:
-    /// The description with its lamps in place. Their rays pass where alpha lets them, so that it
-    /// is set here.
-    const SceneDescription& lit_description();
+    /// The description with its lamps in place, and the geometry without the walls that keep the
+    /// light of stand-ins out. Their rays pass where alpha lets them, so that it is set here.
+    const SceneDescription& lit_description(const std::string& isa);
 };
 
 }  // namespace covtrace

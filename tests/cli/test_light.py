@@ -178,19 +178,38 @@ class Light(CliTest):
         image, _ = self.seen("--light", "camera", "--environment", "0.25", scene=dark)
         self.assertAlmostEqual(image["G"][0], 0.25, places=4)
 
-    def test_rooms_that_no_light_from_outside_reaches_get_a_lamp(self):
+    def test_walls_let_in_the_light_that_stands_in(self):
         dark = ROOM.replace('LightSource "infinite"\n', "")
-        image, warnings = self.seen(scene=dark)
-        self.assertAlmostEqual(self.mean(image["G"]), 0.6 * REFLECTANCE, delta=0.01)
-        self.assertRegex(warnings[-1], "walls keep the sky and the key light from most of what is seen")
-        told = re.search('option light.*"(.*)"', warnings[-1])[1]
-        again, _ = self.seen("--light", told, scene=dark)
-        self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
+        image, warnings = self.seen("--spp", "256", scene=dark)
+        self.assertRegex(warnings[-1], "walls keep the sky and the key light from most of what is seen; the outermost \\(1 of 1 shapes\\)")
+        # The wall before the camera is as bright as a piece of it that stands alone.
+        alone = 'CoordSysTransform "camera"\nTranslate 0 0 3\nShape "disk"\n'
+
+        def middle(picture):
+            return self.mean([picture["G"][24 * y + x] for y in (7, 8) for x in (11, 12)])
+
+        piece, warnings = self.seen("--spp", "256", scene=dark.split("Shape")[0] + alone)
+        self.assertNotIn("walls", "".join(warnings))
+        self.assertAlmostEqual(middle(piece) / middle(image), 1, delta=0.02)
+        # A ball that hangs between there and the key light throws a shadow.
+        ball = 'CoordSysTransform "camera"\nTranslate -0.953 1.335 1.856\nShape "sphere" "float radius" 0.3\n'
+        with_ball, warnings = self.seen("--spp", "256", scene=dark + ball)
+        self.assertIn("the outermost (1 of 2 shapes)", warnings[-1])
+        self.assertLess(middle(with_ball), 0.7 * middle(image))
         # Outside, and where half of the room is open, the light that stands in is enough.
         for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0')):
             _, warnings = self.seen(scene=open_scene)
             self.assertIn("no lights", "".join(warnings))
             self.assertNotIn("walls", "".join(warnings))
+
+    def test_rooms_in_houses_get_a_lamp(self):
+        dark = ROOM.replace('LightSource "infinite"\n', "") + 'Shape "sphere" "float radius" 9\n'
+        image, warnings = self.seen(scene=dark)
+        self.assertAlmostEqual(self.mean(image["G"]), 0.6 * REFLECTANCE, delta=0.01)
+        self.assertRegex(warnings[-1], "walls keep the sky and the key light from most of what is seen; a lamp at the camera")
+        told = re.search('option light.*"(.*)"', warnings[-1])[1]
+        again, _ = self.seen("--light", told, scene=dark)
+        self.assertAlmostEqual(self.mean(again["G"]), self.mean(image["G"]), delta=0.003)
 
     def test_a_camera_on_a_wall_sees_the_room(self):
         self.write("room.gltf", glowing_room(0))

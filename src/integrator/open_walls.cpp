@@ -1,0 +1,36 @@
+#include "integrator/open_walls.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "integrator/view_probe.h"
+
+namespace covtrace {
+
+bool open_walls(SceneDescription& scene, const Geometry& geometry, const TextureStore& textures) {
+    if (std::none_of(scene.lamps.begin(), scene.lamps.end(),
+                     [](const LampDescription& lamp) { return lamp.is_for_the_dark; }))
+        return false;
+    const ViewProbe probe(scene, geometry, textures);
+    if (!probe.is_dark()) return false;
+    const std::vector<bool> walls = probe.outer_walls();
+    if (probe.is_dark(walls)) return false;
+    size_t next = 0;  // place of a shape in Geometry::shapes
+    const auto open = [&](std::vector<ShapeDescription>& shapes) {
+        for (ShapeDescription& shape : shapes)
+            if (walls[next++]) shape.visible_to &= set_of(RayKind::any) | set_of(RayKind::camera);
+    };
+    open(scene.shapes);
+    for (ObjectDescription& object : scene.objects) open(object.shapes);
+    scene.warnings.push_back(
+        {{},
+         "walls keep the sky and the key light from most of what is seen; the outermost (" +
+             std::to_string(std::count(walls.begin(), walls.end(), true)) + " of " +
+             std::to_string(walls.size()) +
+             " shapes) let that light in, as in viewers, and throw no shadows; '--light camera' "
+             "lights the room from the camera in its place"});
+    return true;
+}
+
+}  // namespace covtrace
