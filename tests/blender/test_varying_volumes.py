@@ -67,8 +67,8 @@ class VaryingVolumesTest(BlenderTest):
     def test_fog_of_noise(self):
         self.bank()
         self.point((1, 0, 2), 200)
-        # The same scene is 2 to 5 % darker in Cycles 3.4 than in 4.5
-        self.assert_parts(0.05 if bpy.app.version >= (4, 0) else 0.08)
+        # The same scene is 2 to 5 % darker in Cycles 3.4 than in 4.5; 64 samples of a point lamp in fog have noise of 5 %
+        self.assert_parts(0.02 if bpy.app.version >= (4, 0) else 0.08, 512)
         self.assertIn('"uniformgrid"', self.export())
         self.assertEqual(self.warnings, [])
 
