@@ -9,9 +9,8 @@
 namespace covtrace {
 
 bool open_walls(SceneDescription& scene, const Geometry& geometry, const TextureStore& textures) {
-    if (std::none_of(scene.lamps.begin(), scene.lamps.end(),
-                     [](const LampDescription& lamp) { return lamp.is_for_the_dark; }))
-        return false;
+    // Media without a wall around them would keep all light off a camera within
+    if (!scene.has_stand_in_lights || scene.camera.medium >= 0) return false;
     const ViewProbe probe(scene, geometry, textures);
     if (!probe.is_dark()) return false;
     const std::vector<bool> walls = probe.outer_walls();

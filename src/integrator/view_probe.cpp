@@ -190,9 +190,11 @@ std::vector<bool> ViewProbe::outer_walls() const {
         });
     });
     std::vector<bool> walls(count);
-    for (size_t i = 0; i < count; ++i)
-        walls[i] = last[i] > 0 && 2 * last[i] >= met[i] &&
-                   geometry_.shapes()[i].description.area_light < 0;
+    for (size_t i = 0; i < count; ++i) {
+        const ShapeDescription& shape = geometry_.shapes()[i].description;
+        walls[i] = last[i] > 0 && 2 * last[i] >= met[i] && shape.area_light < 0 &&
+                   shape.inside < 0 && shape.outside < 0;
+    }
     return walls;
 }
 

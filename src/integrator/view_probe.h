@@ -31,7 +31,8 @@ class ViewProbe {
     /// (image/darkness.h). `open`: shapes, by their place in Geometry::shapes, that let light pass.
     bool is_dark(const std::vector<bool>& open = {}) const;
     /// The shapes, by their place in Geometry::shapes, that are the last on most ways to the light
-    /// outside on which they lie, from what is seen. Shapes that emit are none of them.
+    /// outside on which they lie, from what is seen. Shapes that emit, and borders of media, are
+    /// none of them.
     std::vector<bool> outer_walls() const;
 
     /// Visits the middles of a grid of the unit square.

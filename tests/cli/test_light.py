@@ -219,6 +219,15 @@ class Light(CliTest):
             self.assertIn("walls keep", result.stderr)
             self.assertGreater(self.mean(exr.read(self.folder / "out.exr").pixels["G"]), least)
 
+    def test_frames_of_dark_rooms_are_lit_through_the_walls(self):
+        self.write("room.gltf", glowing_room(0))
+        result = self.run_program("render", "room.gltf", "-o", "out.exr", "--resolution", "24x24", "--spp", "4", "--progress", "none",
+                                  "--frames", "0-1")
+        self.assertEqual(result.code, DONE, result)
+        self.assertIn("the outermost (1 of 1 shapes) let that light in", result.stderr)
+        for frame in (0, 1):
+            self.assertGreater(self.mean(exr.read(self.folder / f"out.000{frame}.exr").pixels["G"]), 0.1)
+
     def test_the_camera_gets_none_in_a_medium(self):
         # The light that a medium sends to an eye beside a lamp is infinite.
         fog = 'MakeNamedMedium "fog" "string type" "homogeneous" "float scale" 0.1\nMediumInterface "" "fog"\nCamera'
