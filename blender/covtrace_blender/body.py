@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import attributes, export_meshes, islands
+from . import attributes, export_meshes, mesh_numbers
 from .atlases import digest
 from .charts import face_normals
 
@@ -49,8 +49,8 @@ class Body:
     """The triangles of a mesh that one material is on, with an Atlas of them.
 
     chosen: (n,) bool, which of the mesh's triangles these are. matrix: 4x4 from the mesh to the world; None where there
-    is none that is the only one. attribute_names: those that nodes ask for; has_islands: whether they ask for Random Per
-    Island. rest: (n, 3, 3) corners of the triangles before all deformation.
+    is none that is the only one. attribute_names, numbers: attributes and outputs of mesh_numbers that nodes ask for.
+    rest: (n, 3, 3) corners of the triangles before all deformation.
     """
 
     @staticmethod
@@ -58,7 +58,7 @@ class Body:
         """Whether a mesh has faces, all of whose vertices are somewhere."""
         return len(mesh.polygons) > 0 and bool(np.isfinite(export_meshes.positions(mesh)).all() and np.isfinite(undeformed(mesh)).all())
 
-    def __init__(self, mesh, chosen, matrix=None, attribute_names=(), has_islands=False):
+    def __init__(self, mesh, chosen, matrix=None, attribute_names=(), numbers=()):
         mesh.calc_loop_triangles()
         vertices, loops = export_meshes.triangles(mesh), export_meshes.triangle_loops(mesh)
         positions, rest = export_meshes.positions(mesh), undeformed(mesh)
@@ -76,8 +76,7 @@ class Body:
             if layer.active_render:
                 self._corners["UV", ""] = uvs
         self._corners.update(attributes.corners(mesh, attribute_names, chosen))
-        if has_islands:
-            self._corners[islands.KIND] = islands.corners(mesh, self.triangles)
+        self._corners.update({output: mesh_numbers.corners(mesh, output, self.triangles) for output in numbers})
         if matrix is not None and abs(np.linalg.det(matrix[:3, :3])) > LEAST_EXTENT:
             turn = np.linalg.inv(matrix[:3, :3]).T
             self._corners["WORLD"] = self._corners["OBJECT"] @ matrix[:3, :3].T + matrix[:3, 3]

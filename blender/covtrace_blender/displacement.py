@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import attributes, export_meshes, islands
+from . import attributes, export_meshes, mesh_numbers
 from .body import Body, corner_normals, keep_undeformed
 from .shader_nodes.evaluator import evaluated
 from .shader_nodes.flat import flat_output
@@ -67,7 +67,7 @@ class Displacer:
             own = np.flatnonzero(first[corners] == np.repeat(numbers, 3))
             vertices, index = np.unique(corners[own], return_index=True)
             if len(vertices):
-                body = Body(mesh, chosen, matrix, attributes.names(material.node_tree), islands.are_asked_for(material.node_tree))
+                body = Body(mesh, chosen, matrix, attributes.names(material.node_tree), mesh_numbers.asked_for(material.node_tree))
                 moves[vertices] = self._moves(nodes[material], material, body, own[index], matrix)
         turned = np.zeros(len(triangles), bool)
         for material, chosen in chosen_of.items():

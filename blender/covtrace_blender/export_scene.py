@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from . import attributes, export_lights, export_meshes, export_motion, export_strands, export_world, islands, ply
+from . import attributes, export_lights, export_meshes, export_motion, export_strands, export_world, mesh_numbers, ply
 from .atlases import Atlases
 from .baking import Surface
 from .body import Body, texture_space
@@ -329,7 +329,7 @@ class SceneExporter(Instances):
             matrix = self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None
             chosen = export_meshes.triangles_of(mesh, self._materials(obj), material)
             self.bodies[key] = Body(mesh, chosen if chosen.any() else ~chosen, matrix, attributes.names(material.node_tree),
-                                    islands.are_asked_for(material.node_tree))
+                                    mesh_numbers.asked_for(material.node_tree))
         return self.bodies[key]
 
     def _look_at_bodies(self):

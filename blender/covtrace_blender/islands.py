@@ -2,22 +2,13 @@
 
 import numpy as np
 
-from .node_signature import all_nodes
 from .shader_nodes.hashing import hashed
 
-KIND = "ISLAND"  # of what nodes ask a body for
 
-
-def are_asked_for(tree):
-    """Whether nodes of a tree ask for them."""
-    return any(node.type == "NEW_GEOMETRY" and node.outputs["Random Per Island"].is_linked for node in all_nodes(tree))
-
-
-def corners(mesh, triangles):
-    """(n, 3, 3) of the corners of (n, 3) triangles: three times a number in [0, 1], the same as in Cycles, which takes that of the
-    vertex that stands for all of a part when its edges have been joined in order."""
-    numbers = hashed(_representatives(mesh).astype(np.uint32)).astype(np.float32) / np.float32(0xFFFFFFFF)
-    return np.repeat(numbers[triangles[:, :1]][..., None], 3, axis=1).repeat(3, axis=2)
+def of_vertices(mesh):
+    """(vertices,) numbers in [0, 1], the same as in Cycles, which takes that of the vertex that stands for all of a part when its edges
+    have been joined in order."""
+    return hashed(_representatives(mesh).astype(np.uint32)).astype(np.float32) / np.float32(0xFFFFFFFF)
 
 
 def _representatives(mesh):

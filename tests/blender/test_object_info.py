@@ -1,4 +1,4 @@
-"""The node Object Info, attributes of objects and islands against Cycles: each object fills a cell of the picture."""
+"""The node Object Info, attributes of objects, islands and pointiness against Cycles: each object fills a cell of the picture."""
 
 import bpy
 import numpy as np
@@ -91,6 +91,26 @@ class ObjectInfoTest(BlenderTest):
         self.assertEqual(self.warnings, [])
         self.assertGreater(theirs.std(), 0.15)
         np.testing.assert_allclose(ours, theirs, atol=0.01)
+
+    def test_points_and_hollows(self):
+        """A landscape of peaks and valleys whose sharp edges are split."""
+        tree = Tree("pointiness")
+        shader = tree.node("Emission")
+        tree.link(tree.node("NewGeometry"), "Pointiness", shader.inputs["Color"])
+        tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+        bpy.ops.mesh.primitive_grid_add(size=1, x_subdivisions=9, y_subdivisions=5, location=(1.5, 0.5, 0))
+        thing = bpy.context.object
+        thing.scale = (4, 2, 1)
+        for vertex in thing.data.vertices:
+            vertex.co.z = np.random.default_rng(vertex.index).random() * 0.3
+        thing.data.materials.append(tree.material)
+        split = thing.modifiers.new("split", "EDGE_SPLIT")
+        split.split_angle = 0.3
+        ours, theirs = self.cells(2)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        self.assertGreater(theirs.std(), 0.02)
+        np.testing.assert_allclose(ours, theirs, atol=0.005)  # a step of 8 bits
 
     def test_instances_differ_at_random(self):
         thing = self.plane(self.shining("Random", "Random", "Random"))

@@ -32,8 +32,8 @@ _GEOMETRY = {"Position": "WORLD", "Normal": "WORLD NORMAL", "True Normal": "WORL
 def _geometry(node, output, inputs):
     if output.identifier == "Backfacing":
         return np.float32(0)  # surfaces are the same from behind; MaterialExporter tells
-    if output.identifier == "Random Per Island":
-        return inputs.place.coordinates(node, "ISLAND")[:, 0]
+    if output.identifier in ("Random Per Island", "Pointiness"):
+        return inputs.place.coordinates(node, output.identifier)[:, 0]
     if output.identifier not in _GEOMETRY:
         raise Unsupported(node, f"its {output.identifier.lower()} has no counterpart")
     return inputs.place.coordinates(node, _GEOMETRY[output.identifier])
