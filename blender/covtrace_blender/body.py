@@ -50,7 +50,8 @@ class Body:
 
     chosen: (n,) bool, which of the mesh's triangles these are. matrix: 4x4 from the mesh to the world; None where there
     is none that is the only one. attribute_names, numbers: attributes and outputs of mesh_numbers that nodes ask for.
-    rest: (n, 3, 3) corners of the triangles before all deformation.
+    to_camera: 4x4 from the world, z ahead; None where that is not known. rest: (n, 3, 3) corners of the triangles before
+    all deformation.
     """
 
     @staticmethod
@@ -58,7 +59,7 @@ class Body:
         """Whether a mesh has faces, all of whose vertices are somewhere."""
         return len(mesh.polygons) > 0 and bool(np.isfinite(export_meshes.positions(mesh)).all() and np.isfinite(undeformed(mesh)).all())
 
-    def __init__(self, mesh, chosen, matrix=None, attribute_names=(), numbers=()):
+    def __init__(self, mesh, chosen, matrix=None, attribute_names=(), numbers=(), to_camera=None):
         mesh.calc_loop_triangles()
         vertices, loops = export_meshes.triangles(mesh), export_meshes.triangle_loops(mesh)
         positions, rest = export_meshes.positions(mesh), undeformed(mesh)
@@ -80,6 +81,8 @@ class Body:
         if matrix is not None and abs(np.linalg.det(matrix[:3, :3])) > LEAST_EXTENT:
             turn = np.linalg.inv(matrix[:3, :3]).T
             self._corners["WORLD"] = self._corners["OBJECT"] @ matrix[:3, :3].T + matrix[:3, 3]
+            if to_camera is not None:
+                self._corners["CAMERA"] = self._corners["WORLD"] @ to_camera[:3, :3].T + to_camera[:3, 3]
             self._corners["WORLD NORMAL"] = self._corners["NORMAL"] @ turn.T
             faces = face_normals(self._corners["OBJECT"]) @ turn.T
             self._corners["WORLD FACE NORMAL"] = np.repeat(faces[:, None], 3, axis=1)

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from mathutils import Matrix, Vector
 
 from .export_shaders import numbers
@@ -72,6 +73,10 @@ class SceneCamera:
     def matrix(self):
         """Its place at the time at which the depsgraph stands, or stood at `hold_if_sharp`."""
         return self._held or self._object().matrix_world.copy()
+
+    def from_world(self):
+        """(4, 4) from the world to the camera, x to the right, y up and z ahead, without the camera's scale; None without a camera."""
+        return np.array(_world_to_camera(self.matrix())) if self.scene.camera else None
 
     def is_blurred(self):
         """Whether its motion blurs the picture."""

@@ -329,7 +329,7 @@ class SceneExporter(Instances):
             matrix = self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None
             chosen = export_meshes.triangles_of(mesh, self._materials(obj), material)
             self.bodies[key] = Body(mesh, chosen if chosen.any() else ~chosen, matrix, attributes.names(material.node_tree),
-                                    mesh_numbers.asked_for(material.node_tree))
+                                    mesh_numbers.asked_for(material.node_tree), self.camera.from_world())
         return self.bodies[key]
 
     def _look_at_bodies(self):

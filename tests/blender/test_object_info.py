@@ -92,6 +92,24 @@ class ObjectInfoTest(BlenderTest):
         self.assertGreater(theirs.std(), 0.15)
         np.testing.assert_allclose(ours, theirs, atol=0.01)
 
+    def test_places_as_the_camera_sees_them(self):
+        outputs = ("View Vector", "View Z Depth", "View Distance")
+        for number in range(2 * COLUMNS):
+            tree = Tree("seen")
+            node, scaled, shader = tree.node("CameraData"), tree.node("VectorMath", {"operation": "MULTIPLY_ADD"}), tree.node("Emission")
+            tree.link(node, outputs[number % 3], scaled.inputs[0])
+            scaled.inputs[1].default_value, scaled.inputs[2].default_value = (0.1, 0.1, 0.1) if number % 3 else (0.3, 0.3, 0.3), (0.4, 0.4, 0.4)
+            tree.link(scaled, 0, shader.inputs["Color"])
+            tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+            self.plane(tree.material, number).location.z = number / 20
+        self.camera.data.type = "PERSP"
+        self.camera.scale, self.camera.data.angle = (2, 2, 2), 0.7
+        ours, theirs = self.cells(2)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        self.assertGreater(theirs.std(), 0.1)
+        np.testing.assert_allclose(ours, theirs, atol=0.01)
+
     def test_points_and_hollows(self):
         """A landscape of peaks and valleys whose sharp edges are split."""
         tree = Tree("pointiness")

@@ -39,6 +39,15 @@ def _geometry(node, output, inputs):
     return inputs.place.coordinates(node, _GEOMETRY[output.identifier])
 
 
+def _camera_data(node, output, inputs):
+    """The place as the camera sees it, also for rays that do not come from there, as in Cycles."""
+    away = inputs.place.coordinates(node, "CAMERA")
+    if output.identifier == "View Z Depth":
+        return away[:, 2]
+    distance = np.linalg.norm(away, axis=1)
+    return distance if output.identifier == "View Distance" else away / np.maximum(distance, 1e-30)[:, None]
+
+
 def rotation(euler):
     """(3, 3) of Euler angles x, y, z in radian, x first."""
     (sx, sy, sz), (cx, cy, cz) = (tuple(f(float(a)) for a in euler) for f in (math.sin, math.cos))
@@ -142,5 +151,5 @@ def _curves_info(node, output, inputs):
 
 NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping, "VECTOR_ROTATE": _vector_rotate,
          "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute, "VOLUME_INFO": _volume_info,
-         "HAIR_INFO": _curves_info,
+         "HAIR_INFO": _curves_info, "CAMERA": _camera_data,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

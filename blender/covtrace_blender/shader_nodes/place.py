@@ -53,7 +53,7 @@ class UvPlace(_Place):
         return np.column_stack((self.uv, np.zeros(len(self.uv), np.float32)))
 
     def coordinates(self, node, kind):
-        """(n, 3): "OBJECT" or "GENERATED" coordinates, the "NORMAL" in the object's space; "WORLD" and "WORLD NORMAL"."""
+        """(n, 3): "OBJECT" or "GENERATED" coordinates, the "NORMAL" in the object's space; "WORLD", "CAMERA" and "WORLD NORMAL"."""
         raise NeedsBody(node, f"{kind.lower()} coordinates do not follow from a UV map")
 
     def attribute(self, node, name, part, missing):
