@@ -66,26 +66,36 @@ def hashed_numbers(*values):
     return [hashed_number(*key) for key in keys]
 
 
+def hashed_place(*values):
+    """As many arrays in [0, 1] as there are numbers, one to four."""
+    if len(values) == 4:
+        return [hashed_number(*(values[(axis - turn) % 4] for axis in range(4))) for turn in range(4)]
+    return hashed_numbers(*values)[:len(values)]
+
+
 def hashed_vector(*values):
     """(..., 3) in [0, 1], of one to four numbers."""
     return np.stack(hashed_numbers(*values), axis=-1)
 
 
+# By how many axes there are, and axis: those whose product is added to it; None: a constant.
+_FACTORS = {2: ((1, None), (0, None)), 3: ((1, 2), (2, 0), (0, 1)), 4: ((1, 3), (2, 0), (0, 1), (1, 2))}
+
+
 def _permuted(*keys):
-    """int32 arrays of the same number, two or three, by the hash functions pcg2d and pcg3d of Jarzynski and Olano, "Hash Functions for
-    GPU Rendering", JCGT 9(3), 2020, section 4.2, in signed integers."""
+    """int32 arrays of the same number, two to four, by the hash functions pcg2d, pcg3d and pcg4d of Jarzynski and Olano, "Hash Functions
+    for GPU Rendering", JCGT 9(3), 2020, section 4.2, in signed integers."""
     with np.errstate(over="ignore"):
         v = [key.astype(np.int32) * np.int32(1664525) + np.int32(1013904223) for key in keys]
         for is_last in (False, True):
-            for axis in range(len(v)):
-                by = [v[(axis + step) % len(v)] for step in (1, 2)]
-                v[axis] = v[axis] + by[0] * (np.int32(1664525) if len(v) == 2 else by[1])
+            for axis, (first, second) in enumerate(_FACTORS[len(v)]):
+                v[axis] = v[axis] + v[first] * (np.int32(1664525) if second is None else v[second])
             if not is_last:
                 v = [axis ^ (axis >> np.int32(16)) for axis in v]
     return v
 
 
 def permuted_numbers(*keys):
-    """Arrays in [0, 1], as many as there are arrays of whole numbers, two or three."""
+    """Arrays in [0, 1], as many as there are arrays of whole numbers, two to four."""
     largest = np.int32(0x7FFFFFFF)
     return [(axis & largest).astype(np.float32) / np.float32(largest) for axis in _permuted(*keys)]

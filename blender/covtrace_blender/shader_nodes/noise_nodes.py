@@ -1,8 +1,7 @@
-"""The nodes Noise, White Noise and Voronoi."""
+"""The nodes Noise and White Noise."""
 
 import numpy as np
 
-from . import voronoi
 from .fractals import KINDS, Octaves
 from .hashing import hashed_number, hashed_vector
 from .noise import fractal, signed_noise
@@ -20,7 +19,7 @@ def points(node, inputs, dimensions):
 
 
 def _dimensions(node):
-    return int(node.noise_dimensions[0] if hasattr(node, "noise_dimensions") else node.voronoi_dimensions[0])
+    return int(node.noise_dimensions[0])
 
 
 def _offset(seed, dimensions):
@@ -63,31 +62,4 @@ def _white_noise(node, output, inputs):
     return hashed_number(*p) if output.type == "VALUE" else hashed_vector(*p)
 
 
-def _voronoi(node, output, inputs):
-    dimensions = _dimensions(node)
-    if inputs.has("Detail") and inputs.number("Detail").any():
-        raise Unsupported(node, "its detail has no counterpart")
-    if dimensions not in (2, 3):
-        raise Unsupported(node, f"it has no counterpart in {node.voronoi_dimensions}")
-    if getattr(node, "normalize", False):
-        raise Unsupported(node, "normalized cells have no counterpart")
-    scale = inputs.number("Scale")[..., None]
-    p = np.atleast_2d(points(node, inputs, dimensions) * scale)
-    jitter = np.clip(inputs.number("Randomness"), 0, 1)
-    if node.feature == "DISTANCE_TO_EDGE":
-        return voronoi.distance_to_edge(p, jitter)
-    metric = voronoi.METRICS[node.distance]
-    exponent = inputs.number("Exponent") if node.distance == "MINKOWSKI" else None
-    if node.feature not in ("F1", "F2"):
-        raise Unsupported(node, f"its feature {node.feature} has no counterpart")
-    distance, colour, position = voronoi.nearest(p, jitter, lambda d: metric(d, exponent), node.feature == "F2")
-    if output.identifier == "Distance":
-        return distance
-    if output.identifier == "Color":
-        return colour
-    full = np.zeros((len(position), 3), np.float32)
-    full[:, :dimensions] = np.where(scale != 0, position / np.where(scale != 0, scale, 1), 0)
-    return full
-
-
-NODES = {"TEX_NOISE": _noise, "TEX_WHITE_NOISE": _white_noise, "TEX_VORONOI": _voronoi}
+NODES = {"TEX_NOISE": _noise, "TEX_WHITE_NOISE": _white_noise}

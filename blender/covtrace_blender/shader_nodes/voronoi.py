@@ -5,7 +5,7 @@ import itertools
 import bpy
 import numpy as np
 
-from .hashing import hashed_numbers, permuted_numbers
+from .hashing import hashed_numbers, hashed_place, permuted_numbers
 from .lattice import Lattice
 
 # Lengths of a vector, whose components are arrays each.
@@ -24,28 +24,29 @@ def _is_permuted():
 
 def _point_in(cells):
     """d arrays in [0, 1]: the points of cells, d arrays (m,) of whole numbers."""
-    if _is_permuted():
+    if _is_permuted() and len(cells) > 1:
         return permuted_numbers(*cells)
-    return hashed_numbers(*(axis.astype(np.float32) for axis in cells))[:len(cells)]
+    return hashed_place(*(axis.astype(np.float32) for axis in cells))
 
 
 def _colour_of(cells):
     """Three arrays in [0, 1], of the same cells."""
-    if _is_permuted():
-        return permuted_numbers(*cells, *(np.zeros_like(cells[0]),) * (3 - len(cells)))
+    if _is_permuted() and len(cells) > 1:
+        return permuted_numbers(*cells, *(np.zeros_like(cells[0]),) * (3 - len(cells)))[:3]
     return hashed_numbers(*(axis.astype(np.float32) for axis in cells))
 
 
 class _Cells:
-    """The cells about each place p (n, d), with their points; `jitter`: how far these are from the cells' corners."""
+    """The cells about each place p (n, d), up to `reach` of them away, with their points; `jitter`: how far these are from the cells'
+    corners."""
 
-    def __init__(self, p, jitter):
+    def __init__(self, p, jitter, reach=1):
         axes = np.ascontiguousarray(np.asarray(p, np.float32).T)
         base = np.floor(axes)
         self.base, self._local, self._jitter = base.astype(np.int32), axes - base, np.asarray(jitter, np.float32)
-        self._points = Lattice(list(self.base), -1, 1, _point_in)
+        self._points = Lattice(list(self.base), -reach, reach, _point_in)
         # Cycles has the first axis vary fastest: of equally near points the first one counts.
-        self.offsets = [offset[::-1] for offset in itertools.product((-1, 0, 1), repeat=len(axes))]
+        self.offsets = [offset[::-1] for offset in itertools.product(range(-reach, reach + 1), repeat=len(axes))]
 
     def away(self, offset):
         """Components, each (n,): the point of the cell `offset` beside that of p, as seen from p."""
@@ -72,6 +73,46 @@ def nearest(p, jitter, metric, is_second):
     jitter = np.asarray(jitter, np.float32)
     position = np.stack([axis + point * jitter for axis, point in zip(owner, _point_in(owner))], axis=-1).astype(np.float32)
     return distance, np.stack(_colour_of(owner), axis=-1), position
+
+
+def smooth(p, jitter, metric, smoothness):
+    """The same three as of the nearest point, which change smoothly from cell to cell; smoothness: above 0, to 0.5."""
+    cells, smoothness = _Cells(p, jitter, reach=2), np.asarray(smoothness, np.float32)
+    colours = Lattice(list(cells.base), -2, 2, _colour_of)
+    found = None
+    for offset in cells.offsets:
+        away = cells.away(offset)
+        values = np.stack([*colours.at(offset), *away], axis=-1)
+        distance = metric(away)
+        if found is None:
+            found, nearest_so_far = values, distance
+            continue
+        share = np.clip(0.5 + 0.5 * (nearest_so_far - distance) / smoothness, 0, 1)
+        share = share * share * (3 - 2 * share)
+        less = smoothness * share * (1 - share)
+        nearest_so_far = nearest_so_far + (distance - nearest_so_far) * share - less
+        found = found + (values - found) * share[:, None] - (less / (1 + 3 * smoothness))[:, None]
+    return nearest_so_far, found[:, :3], found[:, 3:] + np.asarray(p, np.float32)
+
+
+def sphere_radius(p, jitter):
+    """(n,): half of the way from the nearest point of each place to the point that is nearest to that one."""
+    cells = _Cells(p, jitter)
+    least, of_nearest = np.full(len(p), np.inf, np.float32), [np.zeros(len(p), np.int32) for _ in cells.base]
+    for offset in cells.offsets:
+        square = sum(x * x for x in cells.away(offset))
+        for new, old in zip(offset, of_nearest):
+            np.copyto(old, new, where=square < least)
+        least = np.minimum(square, least)
+    jitter = np.asarray(jitter, np.float32)
+    owner = [base + k for base, k in zip(cells.base, of_nearest)]
+    own = [point * jitter for point in _point_in(owner)]
+    least = np.full(len(p), np.inf, np.float32)
+    for offset in cells.offsets:
+        if any(offset):
+            other = _point_in([axis + np.int32(k) for axis, k in zip(owner, offset)])
+            least = np.minimum(least, sum((point * jitter + np.float32(k) - o) ** 2 for point, k, o in zip(other, offset, own)))
+    return np.sqrt(least) / 2
 
 
 def distance_to_edge(p, jitter):
