@@ -45,6 +45,13 @@ def corner_normals(mesh, positions, triangles, loops):
     return normals
 
 
+def edge_distances(corners):
+    """(n, 3, 3) at (n, 3, 3) corners of triangles: how far each is from the sides opposite to the three corners."""
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, 1, axis=1), axis=2)
+    double_areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return np.eye(3) * (double_areas[:, None] / np.maximum(sides, 1e-30))[:, None]
+
+
 class Body:
     """The triangles of a mesh that one material is on, with an Atlas of them.
 
@@ -83,6 +90,7 @@ class Body:
             self._corners["WORLD"] = self._corners["OBJECT"] @ matrix[:3, :3].T + matrix[:3, 3]
             if to_camera is not None:
                 self._corners["CAMERA"] = self._corners["WORLD"] @ to_camera[:3, :3].T + to_camera[:3, 3]
+            self._corners["WORLD EDGES"] = edge_distances(self._corners["WORLD"])
             self._corners["WORLD NORMAL"] = self._corners["NORMAL"] @ turn.T
             faces = face_normals(self._corners["OBJECT"]) @ turn.T
             self._corners["WORLD FACE NORMAL"] = np.repeat(faces[:, None], 3, axis=1)

@@ -110,6 +110,20 @@ class ObjectInfoTest(BlenderTest):
         self.assertGreater(theirs.std(), 0.1)
         np.testing.assert_allclose(ours, theirs, atol=0.01)
 
+    def test_wires(self):
+        tree = Tree("wires")
+        shader = tree.node("Emission")
+        tree.link(tree.node("Wireframe", {}, {"Size": 0.12}), 0, shader.inputs["Color"])
+        tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+        self.plane(tree.material).scale = (0.6, 1, 1)
+        self.scene.render.resolution_x = self.scene.render.resolution_y = 64
+        self.camera.location, self.camera.data.ortho_scale = (0, 0, 5), 1
+        ours, theirs = (np.asarray(render(engine, 64)["Combined.R"]) for engine in ("COVTRACE", "CYCLES"))
+        self.export()
+        self.assertEqual(self.warnings, [])
+        self.assertAlmostEqual(ours.mean() / theirs.mean(), 1, delta=0.02)
+        self.assertLess(np.abs(ours - theirs).mean(), 0.02)
+
     def test_points_and_hollows(self):
         """A landscape of peaks and valleys whose sharp edges are split."""
         tree = Tree("pointiness")

@@ -48,6 +48,13 @@ def _camera_data(node, output, inputs):
     return distance if output.identifier == "View Distance" else away / np.maximum(distance, 1e-30)[:, None]
 
 
+def _wireframe(node, output, inputs):
+    """Whether one of the triangle's sides, each half as wide as the lines, is near: those between the triangles of a face, too."""
+    if node.use_pixel_size:
+        raise Unsupported(node, "lines as wide as pixels have no counterpart")
+    return (inputs.place.coordinates(node, "WORLD EDGES").min(axis=1) < inputs.number("Size") / 2).astype(np.float32)
+
+
 def rotation(euler):
     """(3, 3) of Euler angles x, y, z in radian, x first."""
     (sx, sy, sz), (cx, cy, cz) = (tuple(f(float(a)) for a in euler) for f in (math.sin, math.cos))
@@ -151,5 +158,5 @@ def _curves_info(node, output, inputs):
 
 NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping, "VECTOR_ROTATE": _vector_rotate,
          "OBJECT_INFO": _object_info, "ATTRIBUTE": _attribute, "VERTEX_COLOR": _attribute, "VOLUME_INFO": _volume_info,
-         "HAIR_INFO": _curves_info, "CAMERA": _camera_data,
+         "HAIR_INFO": _curves_info, "CAMERA": _camera_data, "WIREFRAME": _wireframe,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}
