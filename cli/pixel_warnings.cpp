@@ -1,7 +1,6 @@
 #include "cli/pixel_warnings.h"
 
 #include "cli/message.h"
-#include "image/darkness.h"
 #include "image/finite_pixels.h"
 
 namespace covtrace::cli {
@@ -17,7 +16,6 @@ void warn_of_rejected(const RenderStatistics& statistics) {
 }
 
 void warn_of_darkness(double dark) {
-    if (dark < kMostlyDark) return;
     say("warning: {:.0f} % of the surfaces in view are black, as no light reaches them; --light "
         "camera adds a lamp, --light 'x,y,z' one at a place, and --environment the sky's light\n",
         100 * dark);
@@ -30,7 +28,6 @@ void warn_of_nothing(const std::string& view) {
 }
 
 void warn_of_overexposure(int stops, float exposure) {
-    if (stops == 0) return;
     say("warning: --png: half of what has light is more than twice as bright as white; --exposure "
         "{:g} shows it\n",
         exposure - float(stops));

@@ -14,8 +14,8 @@ void warn_of_rejected(const RenderStatistics& statistics);
 void warn_of_darkness(double dark);
 /// Warns of an image that shows nothing. `view`: view_of_all of the scene, where that is not empty.
 void warn_of_nothing(const std::string& view);
-/// Warns of a picture that is `stops` too bright to show half of what has light, none where that is
-/// 0; `exposure`: by which it was brightened.
+/// Warns of a picture that is `stops` too bright to show half of what has light. `exposure`: by
+/// which it was brightened.
 void warn_of_overexposure(int stops, float exposure);
 /// Warns of pixels that were replaced when the image was made.
 void warn_of_replaced(const Image& image);

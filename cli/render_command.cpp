@@ -193,9 +193,11 @@ PictureFaults faults_of(const RenderArguments& a, const fs::path& output, const 
     return found;
 }
 
-/// Tells what was rendered, and what went wrong with it.
+/// Tells what was rendered, and what went wrong with it. `told`: of tell_warnings; of frames the
+/// first with a fault stands for all others.
 void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs::path& output,
-                  const PictureFaults& faults, const Monitor& monitor) {
+                  const PictureFaults& faults, const Monitor& monitor,
+                  std::set<std::string>& told) {
     warn_of_rejected(result.statistics);
     warn_of_replaced(result.image);
     if (result.is_below_least)
@@ -203,9 +205,11 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
             "needs\n");
     if (a.quiet) return;
     warn_of_failed_denoiser(result.image);
-    warn_of_darkness(faults.dark);
-    if (!faults.other_view.empty()) warn_of_nothing(faults.other_view);
-    warn_of_overexposure(faults.too_bright, a.display.exposure);
+    const auto is_new = [&told](const char* fault) { return told.insert(fault).second; };
+    if (faults.dark >= kMostlyDark && is_new("dark")) warn_of_darkness(faults.dark);
+    if (!faults.other_view.empty() && is_new("nothing")) warn_of_nothing(faults.other_view);
+    if (faults.too_bright > 0 && is_new("bright"))
+        warn_of_overexposure(faults.too_bright, a.display.exposure);
     say("{}: {:.4g} samples per pixel{} in {:.1f} s{}\n",
         a.film.shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
         result.statistics.density_factor
@@ -302,7 +306,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
-    tell_outcome(result, a, output, faults, monitor);
+    tell_outcome(result, a, output, faults, monitor, told);
     // A viewer that still takes the last image may do so; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));

@@ -60,6 +60,7 @@ double dark_share(const Image& image) {
 }
 
 bool shows_nothing(const Image& image) {
+    if (!(image.data == image.display)) return false;
     const Channels light = layer(image, ""), normal = layer(image, "N.", "XYZ");
     if (!light[0] || !normal[0]) return false;
     const auto is_zero = [](const Channel* c) {

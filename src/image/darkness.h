@@ -12,7 +12,7 @@ namespace covtrace {
 double dark_share(const Image& image);
 
 /// Whether an image shows nothing at all: it is black, and its layer "N" has no surface in view.
-/// False without that layer.
+/// False without that layer, and of a part of the view, whose rest nobody has seen.
 bool shows_nothing(const Image& image);
 
 /// From this share on an image is told to be dark.

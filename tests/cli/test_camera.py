@@ -54,6 +54,13 @@ class Camera(CliTest):
     def test_a_mirrored_world_stays_so(self):
         self.assertEqual(self.halves(FRONT, "Scale -1 1 1\n" + ELSEWHERE + 'Camera "perspective"\n'), ("R", "G"))
 
+    def test_a_part_of_the_view_does_not_tell_of_all(self):
+        dark = WORLD.replace("AreaLightSource", "# AreaLightSource") + 'LightSource "point"\n'
+        corner = FILM.replace('"rgb"', '"rgb" "float cropwindow" [0 0.1 0.8 1]')
+        for film, camera, tells in ((corner, ("--camera", FRONT), False), (FILM, (), True)):
+            result = self.render(ELSEWHERE + 'Camera "perspective"\n' + film + dark, *camera)
+            self.assertEqual("the camera sees nothing" in result.stderr, tells, result)
+
     def test_up(self):
         # Lying on its left side, the camera has the world's top on the right.
         self.assertEqual(self.halves("eye 0,0,-8 target 0,1.5,0 fov 40 up -1,0,0"), ("RG", "B"))
