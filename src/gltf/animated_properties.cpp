@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <utility>
+
+#include "scene/names.h"
 
 namespace covtrace::gltf {
 namespace {
@@ -23,9 +26,59 @@ bool is_light(const Document& document, const Path& path) {
            path[2] == "lights" && pointer_index(path[3], document.model.lights.size());
 }
 
-bool is_weights(const Document& document, const Path& path) {
-    return path.size() == 3 && is_element(path, "meshes", document.model.meshes.size()) &&
-           path[2] == "weights";
+/// Whether a path is the texture of a material, or leads through one, that is not there.
+bool lacks_texture(const tinygltf::Material& material, const Path& path) {
+    const bool is_of_extension = path[2] == "extensions" && path.size() > 4;
+    const auto part = std::find_if(path.begin() + 2, path.end(),
+                                   [](const std::string& p) { return p.ends_with("Texture"); });
+    if (part == path.end()) return false;
+    if (is_of_extension) {
+        const tinygltf::Value* own = extension(material.extensions, path[3].c_str());
+        return !own || !own->Has(*part);
+    }
+    const auto& base = material.pbrMetallicRoughness;
+    const std::pair<const char*, int> indices[] = {
+        {"baseColorTexture", base.baseColorTexture.index},
+        {"metallicRoughnessTexture", base.metallicRoughnessTexture.index},
+        {"normalTexture", material.normalTexture.index},
+        {"occlusionTexture", material.occlusionTexture.index},
+        {"emissiveTexture", material.emissiveTexture.index}};
+    return std::ranges::none_of(indices,
+                                [&](const auto& t) { return t.first == *part && t.second >= 0; });
+}
+
+bool is_of_material(const Document& document, const Path& path) {
+    const auto& materials = document.model.materials;
+    return is_element(path, "materials", materials.size()) &&
+           !lacks_texture(materials[*pointer_index(path[1], materials.size())], path);
+}
+
+/// Whether a path is all weights of a mesh or one of them.
+bool is_weights_of_mesh(const Document& document, const Path& path) {
+    const auto& meshes = document.model.meshes;
+    if (!is_element(path, "meshes", meshes.size()) || path[2] != "weights") return false;
+    if (path.size() == 3) return true;
+    const auto& primitives = meshes[*pointer_index(path[1], meshes.size())].primitives;
+    return path.size() == 4 && !primitives.empty() &&
+           pointer_index(path[3], primitives[0].targets.size());
+}
+
+/// Whether a path is one of the weights that a node has of its own.
+bool is_weight_of_node(const Document& document, const Path& path) {
+    const auto& nodes = document.model.nodes;
+    return path.size() == 4 && is_element(path, "nodes", nodes.size()) && path[2] == "weights" &&
+           pointer_index(path[3], nodes[*pointer_index(path[1], nodes.size())].weights.size());
+}
+
+/// Sets all weights, or the one that the path ends with.
+void set_weights(std::vector<double>& weights, const Path& path, const std::vector<double>& value) {
+    if (path.size() == 3) {
+        weights = value;
+        return;
+    }
+    const size_t i = pointer_index(path[3], SIZE_MAX).value_or(0);
+    if (weights.size() <= i) weights.resize(i + 1);
+    weights[i] = value[0];
 }
 
 bool is_visibility(const Document& document, const Path& path) {
@@ -37,27 +90,41 @@ bool is_true(const std::vector<double>& value) {
     return value[0] >= 0.5;  // outputs of animations are numbers
 }
 
-/// Sets the value that a path names; objects that are not there are made. Leaves what is not
-/// reached through objects and elements of lists.
-void set(json& root, const Path& path, const std::vector<double>& value) {
+/// Whether a value may take the place of what a file has.
+bool may_replace(const json& place, const std::vector<double>& value) {
+    if (place.is_array()) return place.size() == value.size();
+    return place.is_null() || ((place.is_number() || place.is_boolean()) && value.size() == 1);
+}
+
+/// Sets the value that a path names; objects that are not there are made. Returns whether the path
+/// leads through objects and elements of lists to what may have that value.
+bool set(json& root, const Path& path, const std::vector<double>& value) {
     json* place = &root;
     for (const std::string& part : path) {
         if (place->is_array()) {
             const auto index = pointer_index(part, place->size());
-            if (!index) return;
+            if (!index) return false;
             place = &(*place)[*index];
         } else if (place->is_object() || place->is_null()) {
             place = &(*place)[part];
         } else {
-            return;
+            return false;
         }
     }
+    if (!may_replace(*place, value)) return false;
     if (place->is_boolean())
         *place = is_true(value);
     else if (value.size() == 1 && !place->is_array())
         *place = value[0];
     else
         *place = value;
+    return true;
+}
+
+std::string text_of(const Path& path) {
+    std::string text;
+    for (const std::string& part : path) text += '/' + part;
+    return in_quotes(text);
 }
 
 /// Reads the JSON of the properties into the document, by the library that has read the whole.
@@ -118,9 +185,17 @@ std::string json_of_properties(std::string_view text) {
 bool AnimatedProperties::has(const Document& document, const Path& path) {
     constexpr size_t kDeepest = 32;  // more parts than extensions of extensions have
     if (path.size() > kDeepest) return false;
-    return is_element(path, "materials", document.model.materials.size()) ||
+    return is_of_material(document, path) ||
            is_element(path, "cameras", document.model.cameras.size()) || is_light(document, path) ||
-           is_weights(document, path) || is_visibility(document, path);
+           is_weights_of_mesh(document, path) || is_weight_of_node(document, path) ||
+           is_visibility(document, path);
+}
+
+ValueKind AnimatedProperties::kind_of(const Path& path) {
+    // Weights, ways and sizes on textures, heights of bumps and turns
+    for (const char* name : {"offset", "rotation", "scale", "anisotropyRotation"})
+        if (path.back() == name) return ValueKind::any;
+    return path[2] == "weights" ? ValueKind::any : ValueKind::positive;
 }
 
 bool AnimatedProperties::add(const Path& path, Channel channel) {
@@ -136,19 +211,24 @@ std::array<float, 2> AnimatedProperties::span() const {
     return span;
 }
 
-void AnimatedProperties::apply(double time, Document& document) const {
+void AnimatedProperties::apply(double time, Document& document, WarningLog& log) const {
     if (channels_.empty()) return;
     json properties = json::parse(document.properties);
     for (const auto& [path, channel] : channels_) {
         const std::vector<double> value = channel.at(time);
         const size_t index = pointer_index(path[1], SIZE_MAX).value_or(0);
-        if (is_weights(document, path))
-            document.model.meshes[index].weights = value;
+        if (is_weights_of_mesh(document, path))
+            set_weights(document.model.meshes[index].weights, path, value);
+        else if (is_weight_of_node(document, path))
+            set_weights(document.model.nodes[index].weights, path, value);
         else if (is_visibility(document, path))
             document.model.nodes[index].extensions[kVisibility] = tinygltf::Value(
                 tinygltf::Value::Object{{"visible", tinygltf::Value(is_true(value))}});
-        else
-            set(properties, path, value);
+        else if (!set(properties, path, value))
+            log.add(document.place("animations"),
+                    "what KHR_animation_pointer moves here rests: " + text_of(path) +
+                        " cannot have values of " + std::to_string(value.size()) +
+                        (value.size() == 1 ? " number" : " numbers"));
     }
     read_properties(properties.dump(), document);
 }

@@ -62,14 +62,15 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
         const std::vector<std::string> path = pointer_path(pointer);
         if (AnimatedProperties::has(document, path))
             return warn_of_second(properties_.add(
-                path, Channel(document, a, channel.sampler, ValueKind::any, place)));
+                path,
+                Channel(document, a, channel.sampler, AnimatedProperties::kind_of(path), place)));
         const auto named = path.size() == 3 && path[0] == "nodes"
                                ? pointer_index(path[1], document.model.nodes.size())
                                : std::nullopt;
         if (!named) {
             log.add(document.place(place),
                     "what KHR_animation_pointer moves here rests: " + in_quotes(pointer) +
-                        " is nothing of a node, material, camera or light of the file");
+                        " is nothing of a node, mesh, material, camera or light of the file");
             return;
         }
         node = static_cast<int>(*named);

@@ -24,6 +24,7 @@ size_t components_of(const Document& document, ValueKind kind, int output,
         case ValueKind::list:
             return 1;
         case ValueKind::any:
+        case ValueKind::positive:
             break;
     }
     const tinygltf::Accessor& accessor =
@@ -97,6 +98,8 @@ std::vector<double> Channel::at(double time) const {
         const double u2 = u * u, u3 = u2 * u;
         result[i] = (2 * u3 - 3 * u2 + 1) * p0 + (u3 - 2 * u2 + u) * out + (3 * u2 - 2 * u3) * p1 +
                     (u3 - u2) * in;
+        if (kind_ == ValueKind::positive && p0 >= 0 && p1 >= 0)
+            result[i] = std::max(result[i], 0.0);
     }
     return result;
 }

@@ -15,6 +15,7 @@ enum class ValueKind {
     rotation,  ///< a quaternion (x, y, z, w), which turns evenly from key to key
     list,      ///< as many numbers as the output has for each time: weights of morph targets
     any,       ///< a vector as the output's type has it, or a list of scalars
+    positive,  ///< the same of a property that is not below 0, where splines overshoot
 };
 
 /// The keys of one property, by an animation's sampler.

@@ -210,7 +210,7 @@ Sweep sweep(Document& document, const Choice& choice, const Animations& animatio
         const std::array<float, 2> shutter{time, time + kExposure};
         SceneDescription moment;
         WarningLog unheard;  // the frame itself tells what is wrong with the file
-        animations.properties().apply(double(time), document);
+        animations.properties().apply(double(time), document, unheard);
         const PlacedNodes placed =
             place_nodes(document, choice.scene, animations, shutter, unheard);
         SceneAssembler assembler(document, placed, animations, choice.variant, shutter, moment,
@@ -255,7 +255,7 @@ SceneDescription read(Document document, const ReadOptions& options, WarningLog&
     if (options.is_frame && !animations.empty()) swept = sweep(document, choice, animations);
     const std::array<float, 2> shutter = options.shutter.value_or(std::array<float, 2>{0, 0});
     // Whatever moves beside nodes does not blur: the middle of the exposure stands for all of it.
-    animations.properties().apply((double(shutter[0]) + double(shutter[1])) / 2, document);
+    animations.properties().apply((double(shutter[0]) + double(shutter[1])) / 2, document, log);
     const PlacedNodes placed = place_nodes(document, choice.scene, animations, shutter, log);
     SceneAssembler assembler(document, placed, animations, choice.variant, shutter, scene, log);
     assembler.add();

@@ -126,6 +126,66 @@ TEST(GltfAnimatedProperties, VisibilityAndWeights) {
     EXPECT_TRUE(at_time(file, 2, 3).shapes.empty());
 }
 
+/// The square with two morph targets, by one and by ten upwards.
+GltfFile with_targets() {
+    GltfFile file = square_file();
+    for (const float z : {1.0f, 10.0f})
+        file.root["meshes"][0]["primitives"][0]["targets"].push_back(
+            {{"POSITION", file.add_floats({0, 0, z, 0, 0, z, 0, 0, z, 0, 0, z}, "VEC3", 3)}});
+    return file;
+}
+
+TEST(GltfAnimatedProperties, SingleWeights) {
+    GltfFile of_mesh = with_targets();  // whose weights have their defaults
+    animate(of_mesh, "/meshes/0/weights/1", {0, 1}, "SCALAR", 1);
+    EXPECT_NEAR(mesh_of(halfway(of_mesh).shapes.at(0)).positions[0].z, 5, 1e-4f);
+    GltfFile of_node = with_targets();
+    of_node.root["nodes"][0]["weights"] = {1, 0};
+    animate(of_node, "/nodes/0/weights/1", {0, 1}, "SCALAR", 1);
+    const SceneDescription scene = halfway(of_node);
+    EXPECT_NEAR(mesh_of(scene.shapes.at(0)).positions[0].z, 6, 1e-4f);
+    EXPECT_FALSE(contains(all_warnings(scene), "KHR_animation_pointer"));
+    for (const char* pointer : {"/meshes/0/weights/2", "/nodes/0/weights/2"}) {
+        GltfFile file = of_node;
+        animate(file, pointer, {0, 1}, "SCALAR", 1);
+        EXPECT_TRUE(contains(all_warnings(halfway(file)), "is nothing of a node, mesh"));
+    }
+}
+
+TEST(GltfAnimatedProperties, SplinesStayAboveZeroWhereTheirPropertyDoes) {
+    // From 1 to 0 with slopes that take the spline below 0 before its end.
+    const std::vector<float> overshooting{0, 1, -4, 4, 0, 0};
+    GltfFile file = square_file();
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    file.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    animate(file, "/extensions/KHR_lights_punctual/lights/0/intensity", overshooting, "SCALAR", 1,
+            "CUBICSPLINE");
+    const auto intensity = [&](float t) {
+        const SceneDescription scene = at_time(file, t - 0.01f, t + 0.01f);
+        // Others take the place of a light that is out
+        const auto* light = std::get_if<PointLight>(&scene.lights.at(0).value);
+        return light ? light->intensity.r : 0;
+    };
+    EXPECT_EQ(intensity(1.5f), 0);
+    EXPECT_NEAR(intensity(0.1f), 0.6f, 0.05f);
+    // A turn of a texture may be negative.
+    GltfFile turned = with_material(
+        {{"pbrMetallicRoughness",
+          {{"metallicFactor", 0},
+           {"baseColorTexture",
+            {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"offset", {0, 0}}}}}}}}}}});
+    turned.root["images"] = {
+        {{"bufferView", turned.add_view("bytes of an image")}, {"mimeType", "image/png"}}};
+    turned.root["textures"] = {{{"source", 0}}};
+    animate(turned,
+            "/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/"
+            "offset",
+            {0, 0, 1, 0, -4, 0, 4, 0, 0, 0, 0, 0}, "VEC2", 2, "CUBICSPLINE");
+    const SceneDescription scene = at_time(turned, 1.49f, 1.51f);
+    const auto& base = model_of<CoatedDiffuseMaterial>(scene, scene.shapes.at(0).material);
+    EXPECT_LT(constant_as<ImageTexture>(scene, base.reflectance).mapping.delta_u, -0.1f);
+}
+
 TEST(GltfAnimatedProperties, FramesAreLitAlikeAtAllMoments) {
     // The lamp is out in the second frame: no sky may take its place there.
     GltfFile file = with_material(
@@ -145,7 +205,8 @@ TEST(GltfAnimatedProperties, PointersToNothingRestAndAreTold) {
     for (const std::string pointer :
          {"/materials/7/alphaCutoff", "/materials/x/alphaCutoff", "/materials/0", "materials/0/a",
           "/textures/0/sampler", "/nodes/9/translation", "/", "", "/cameras/0/perspective/yfov",
-          deep.c_str()}) {
+          "/materials/0/normalTexture/scale",
+          "/materials/0/extensions/KHR_materials_sheen/sheenColorTexture/texCoord", deep.c_str()}) {
         GltfFile file = with_material(json::object());
         animate(file, pointer, {0, 1}, "SCALAR", 1);
         EXPECT_TRUE(contains(all_warnings(halfway(file)),
@@ -175,6 +236,24 @@ TEST(GltfAnimatedProperties, SurvivesValuesThatAPropertyCannotHave) {
         } catch (const Error& e) {
             EXPECT_EQ(e.kind(), ErrorKind::scene) << pointer << ": " << e.what();
         }
+    }
+}
+
+TEST(GltfAnimatedProperties, ValuesOfAnotherSizeAreTold) {
+    for (const char* pointer : {"/materials/0/pbrMetallicRoughness/baseColorFactor",
+                                "/materials/0/alphaMode", "/materials/0/emissiveFactor/7"}) {
+        GltfFile file =
+            with_material({{"pbrMetallicRoughness",
+                            {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}, {"metallicFactor", 0}}},
+                           {"emissiveFactor", {0, 0, 0}},
+                           {"alphaMode", "MASK"}});
+        animate(file, pointer, {0.75f, 0.75f}, "SCALAR", 1);
+        const SceneDescription scene = halfway(file);
+        EXPECT_TRUE(contains(all_warnings(scene), std::string("rests: \"") + pointer +
+                                                      "\" cannot have values of 1 number"))
+            << all_warnings(scene);
+        const auto& base = model_of<CoatedDiffuseMaterial>(scene, scene.shapes.at(0).material);
+        expect_near(constant_value(scene, base.reflectance), {0.5f, 0.25f, 0.125f}, 1e-6f);
     }
 }
 
