@@ -1,5 +1,6 @@
 #include "gltf/lights.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gltf/units.h"
@@ -97,11 +98,15 @@ float illuminance(const LightDescription& light, const Bounds3& bounds) {
 }  // namespace
 
 void scale_lights(const Document& document, const Bounds3& bounds,
-                  const std::vector<LightDescription>& judged, SceneDescription& scene,
+                  std::span<const std::vector<LightDescription>> judged, SceneDescription& scene,
                   WarningLog& log) {
-    float sum = 0;
-    for (const LightDescription& light : judged) sum += illuminance(light, bounds);
-    if (!(sum > kPhysicalLux)) return;
+    float most = 0;
+    for (const std::vector<LightDescription>& lights : judged) {
+        float sum = 0;
+        for (const LightDescription& light : lights) sum += illuminance(light, bounds);
+        most = std::max(most, sum);
+    }
+    if (!(most > kPhysicalLux)) return;
     constexpr float kScale = 1 / kLumensPerWatt;
     for (LightDescription& light : scene.lights) {
         if (auto* point = std::get_if<PointLight>(&light.value))
@@ -112,7 +117,7 @@ void scale_lights(const Document& document, const Bounds3& bounds,
             std::get<DistantLight>(light.value).radiance *= kScale;
     }
     log.add(document.place("extensions.KHR_lights_punctual"),
-            "the lights give about " + std::to_string(std::lround(sum)) +
+            "the lights give about " + std::to_string(std::lround(most)) +
                 " lux, physical units: candela and lux are divided by 683 lm/W");
 }
 

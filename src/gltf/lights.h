@@ -1,6 +1,9 @@
 /// Private to this folder: KHR_lights_punctual, and default lights for a scene without any.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "gltf/document.h"
 #include "gltf/nodes.h"
 #include "scene/scene_description.h"
@@ -17,9 +20,9 @@ void add_light(const Document& document, const PlacedNode& placed, SceneDescript
 /// write 683 lm/W times what the renderer used. Lights that give the middle of the scene more than
 /// kPhysicalLux together are taken to be of such exporters and divided by kLumensPerWatt, with a
 /// warning; see docs/guide/gltf.md. `judged`: the lights that this is decided by, the scene's own
-/// or, of a frame of an animation, those that all of its frames are judged by.
+/// or, of a frame of an animation, those of several moments, of which the brightest counts.
 void scale_lights(const Document& document, const Bounds3& bounds,
-                  const std::vector<LightDescription>& judged, SceneDescription& scene,
+                  std::span<const std::vector<LightDescription>> judged, SceneDescription& scene,
                   WarningLog& log);
 inline constexpr float kPhysicalLux = 100;
 

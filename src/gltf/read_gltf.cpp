@@ -194,9 +194,9 @@ class SceneAssembler {
 /// Shapes and lights of a whole animation, by which each of its frames is looked at, so that
 /// nothing jumps from one to the next.
 struct Sweep {
-    Bounds3 bounds;                        ///< SceneDescription::swept
-    std::vector<LightDescription> lights;  ///< as they stand at the beginning
-    bool has_lamps = false;                ///< at any moment
+    Bounds3 bounds;                                     ///< SceneDescription::swept
+    std::vector<std::vector<LightDescription>> lights;  ///< by moment
+    bool has_lamps = false;                             ///< at any moment
 };
 
 /// Leaves the document as it is at the end of the animations.
@@ -218,7 +218,7 @@ Sweep sweep(Document& document, const Choice& choice, const Animations& animatio
         assembler.add();
         swept.bounds.extend(assembler.bounds());
         swept.has_lamps = swept.has_lamps || assembler.has_lamps();
-        if (i == 0) swept.lights = moment.lights;
+        swept.lights.push_back(std::move(moment.lights));
     }
     return swept;
 }
@@ -271,7 +271,9 @@ SceneDescription read(Document document, const ReadOptions& options, WarningLog&
         // is to change the blur alone.
         scene.film.iso = 100 / (close - open);
     }
-    scale_lights(document, bounds, swept ? swept->lights : scene.lights, scene, log);
+    std::vector<std::vector<LightDescription>> judged{scene.lights};
+    if (swept) judged = std::move(swept->lights);
+    scale_lights(document, bounds, judged, scene, log);
     if (!assembler.has_lamps() && !(swept && swept->has_lamps))
         scene.no_lights = {document.place(""),
                            "the scene has no lights (KHR_lights_punctual, or an emissive strength "

@@ -199,6 +199,23 @@ TEST(GltfAnimatedProperties, FramesAreLitAlikeAtAllMoments) {
     EXPECT_FALSE(contains(all_warnings(read(file, frame)), "the scene has no lights"));
 }
 
+TEST(GltfAnimatedProperties, FramesHaveOneUnitOfLight) {
+    // A lamp of 5000 candela that is out at first.
+    GltfFile file = square_file();
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    file.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    animate(file, "/extensions/KHR_lights_punctual/lights/0/intensity", {0, 5000}, "SCALAR", 1);
+    for (const float time : {0.1f, 2.0f}) {
+        ReadOptions frame{{}, std::array<float, 2>{time, time}};
+        (*frame.shutter)[1] += 1e-3f;
+        frame.is_frame = true;
+        const SceneDescription scene = read(file, frame);
+        EXPECT_TRUE(contains(all_warnings(scene), "physical units"));
+        const float candela = std::get<PointLight>(scene.lights.at(0).value).intensity.r;
+        EXPECT_NEAR(candela, 2500 * time / 683, 0.02f * candela);
+    }
+}
+
 TEST(GltfAnimatedProperties, PointersToNothingRestAndAreTold) {
     std::string deep = "/materials/0";
     for (int i = 0; i < 100000; ++i) deep += "/a";
