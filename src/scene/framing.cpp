@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 #include "scene/extent.h"
+#include "scene/up_axis.h"
 #include "scene/view_text.h"
 
 namespace covtrace {
@@ -44,9 +47,10 @@ class Slab {
 
 bool frame_all(SceneDescription& scene) {
     const float azimuth = 30 / kDegrees, height = 20 / kDegrees;
-    const Vec3 forward = -Vec3{std::sin(azimuth) * std::cos(height), std::sin(height),
-                               std::cos(azimuth) * std::cos(height)};
-    const Vec3 right = normalize(cross(forward, {0, 1, 0})), up = cross(right, forward);
+    const Vec3 top = up_axis(scene), front = top.z != 0 ? Vec3{0, -1, 0} : Vec3{0, 0, 1};
+    const Vec3 forward = -(cross(top, front) * (std::sin(azimuth) * std::cos(height)) +
+                           top * std::sin(height) + front * (std::cos(azimuth) * std::cos(height)));
+    const Vec3 right = normalize(cross(forward, top)), up = cross(right, forward);
     const double aspect = double(scene.film.width) / double(scene.film.height);
     const double slope = kFilled * std::tan(0.5 * double(kFov / kDegrees));
     Slab across(slope * std::max(1.0, aspect)), upright(slope * std::max(1.0, 1 / aspect));
@@ -88,10 +92,18 @@ bool frame_all(SceneDescription& scene) {
 
 std::string view_of_all(SceneDescription& scene) {
     if (bounds(scene).empty()) return {};
-    CameraDescription own = scene.camera;
-    scene.camera = {};
-    const std::string text = frame_all(scene) ? view_text(scene) : "";
+    const Vec3 up = up_axis(scene);
+    const std::optional<Vec3> own_up = std::exchange(scene.up, up);
+    CameraDescription own = std::exchange(scene.camera, {});
+    std::string text = frame_all(scene) ? view_text(scene) : "";
+    // A camera of the command line takes its upward direction with it
+    if (!text.empty() && !scene.camera_override.empty()) {
+        std::ostringstream out;
+        out << " up " << up.x << ',' << up.y << ',' << up.z;
+        text += out.str();
+    }
     scene.camera = std::move(own);
+    scene.up = own_up;
     return text;
 }
 

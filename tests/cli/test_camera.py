@@ -1,5 +1,6 @@
 """--camera: a perspective pinhole in place of whatever camera the scene has."""
 
+import re
 import unittest
 
 import exr
@@ -60,6 +61,18 @@ class Camera(CliTest):
         for film, camera, tells in ((corner, ("--camera", FRONT), False), (FILM, (), True)):
             result = self.render(ELSEWHERE + 'Camera "perspective"\n' + film + dark, *camera)
             self.assertEqual("the camera sees nothing" in result.stderr, tells, result)
+
+    def test_another_view_stands_upright_and_holds_all(self):
+        rod = 'WorldBegin\nAreaLightSource "diffuse" "rgb L" [1 1 1]\nRotate 30 0 1 0\nScale 0.1 0.1 10\nShape "sphere"\n'
+        for away, turned in (("LookAt 0 -9 0  0 -99 0  0 0 1", ()), (ELSEWHERE, ("--camera", "eye 0,-99,0 target 0,-999,0 fov 40 up 0,0,1"))):
+            scene = f'{away}\nCamera "perspective"\n' + FILM + rod
+            told = self.render(scene, *turned)
+            image = exr.read(self.rendered("--method", "uniform", "--camera", re.search("--camera '(.*)'", told.stderr)[1], scene=scene))
+            light = [i for i, v in enumerate(image.pixels["G"]) if v > 0.01]
+            self.assertTrue(light)
+            rows, columns = {i // image.width for i in light}, {i % image.width for i in light}
+            self.assertTrue(min(rows) > 0 and max(rows) < 15 and min(columns) > 0 and max(columns) < 31, (rows, columns))
+            self.assertGreater(len(rows), len(columns))
 
     def test_up(self):
         # Lying on its left side, the camera has the world's top on the right.
