@@ -1,10 +1,11 @@
 #include "image/display.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "image/color_encoding.h"
@@ -116,19 +117,26 @@ std::array<uint8_t, 3> display_8bit(Rgb linear, const DisplayOptions& options) {
 }
 
 int stops_too_bright(const Image& image, const DisplayOptions& options) {
-    constexpr float kTooBright = 2, kGoal = 0.5f;
+    constexpr int kGoalExponent = -1;  // 0.5
+    constexpr int kTooManyStops = 3;   // above 2
     const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
     if (!r || !g || !b || options.ocio || options.view != ViewTransform::srgb) return 0;
     const float black = srgb_decode(1.0f / 255), gain = std::exp2(options.exposure);
-    std::vector<float> shown;
+    // Pixels by their stops above the goal, 0 below it
+    std::array<size_t, 1 + std::numeric_limits<float>::max_exponent - kGoalExponent> by_stops{};
+    size_t shown = 0;
     for (size_t i = 0; i < image.pixel_count(); ++i) {
         const float y = gain * luminance(Rgb(r->values[i], g->values[i], b->values[i]));
-        if (y > black && std::isfinite(y)) shown.push_back(y);
+        if (!(y > black && std::isfinite(y))) continue;
+        const float stops = std::ceil(std::log2(y)) - kGoalExponent;
+        ++by_stops[static_cast<size_t>(std::max(stops, 0.0f))];
+        ++shown;
     }
-    if (shown.empty() || 10 * shown.size() < image.pixel_count()) return 0;
-    const auto middle = shown.begin() + static_cast<std::ptrdiff_t>(shown.size() / 2);
-    std::nth_element(shown.begin(), middle, shown.end());
-    return *middle > kTooBright ? static_cast<int>(std::ceil(std::log2(*middle / kGoal))) : 0;
+    if (shown == 0 || 10 * shown < image.pixel_count()) return 0;
+    int middle = 0;
+    for (size_t below = by_stops[0]; below <= shown / 2; below += by_stops[size_t(middle)])
+        ++middle;
+    return middle >= kTooManyStops ? middle : 0;
 }
 
 }  // namespace covtrace

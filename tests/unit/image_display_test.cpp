@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "image/color_encoding.h"
@@ -21,6 +22,38 @@ TEST(Display, SrgbIsCutAtWhite) {
         EXPECT_EQ(shown(Rgb(v), ViewTransform::srgb), (Shown{e, e, e})) << v;
     }
     EXPECT_EQ(shown({0.5f, std::nanf(""), 0.25f}, ViewTransform::srgb), (Shown{188, 0, 137}));
+}
+
+/// A picture of which a share is grey of this luminance, and the rest of another.
+Image greys(float share, float light, float rest) {
+    constexpr int kSide = 20;
+    Image image{{0, 0, kSide, kSide}, {0, 0, kSide, kSide}, {}, {}};
+    for (const char* name : {"R", "G", "B"}) {
+        Channel& c = image.add_channel(name);
+        std::fill(c.values.begin(), c.values.end(), rest);
+        std::fill_n(c.values.begin(), size_t(share * kSide * kSide), light);
+    }
+    return image;
+}
+
+TEST(Display, StopsTooBright) {
+    EXPECT_EQ(stops_too_bright(greys(1, 10, 0), {}), 5);  // 10 / 2^5 is 0.31
+    EXPECT_EQ(stops_too_bright(greys(1, 8.001f, 0), {}), 5);
+    EXPECT_EQ(stops_too_bright(greys(1, 7.999f, 0), {}), 4);
+    EXPECT_EQ(stops_too_bright(greys(1, 10, 0), {1}), 6);
+    EXPECT_EQ(stops_too_bright(greys(1, 1.99f, 0), {}), 0);
+    EXPECT_EQ(stops_too_bright(greys(1, 3e38f, 0), {}), 129);
+    // Half of what has light, and at least a tenth of the picture
+    EXPECT_EQ(stops_too_bright(greys(0.55f, 10, 0.1f), {}), 5);
+    EXPECT_EQ(stops_too_bright(greys(0.45f, 10, 0.1f), {}), 0);
+    EXPECT_EQ(stops_too_bright(greys(0.45f, 10, 0), {}), 5);
+    EXPECT_EQ(stops_too_bright(greys(0.05f, 10, 0), {}), 0);
+    // Values that are no numbers do not count
+    EXPECT_EQ(stops_too_bright(greys(0.55f, std::nanf(""), 10), {}), 5);
+    EXPECT_EQ(stops_too_bright(greys(1, kInfinity, 0), {}), 0);
+    EXPECT_EQ(stops_too_bright(greys(1, -10, 0), {}), 0);
+    EXPECT_EQ(stops_too_bright(greys(1, 10, 0), {0, ViewTransform::agx}), 0);
+    EXPECT_EQ(stops_too_bright({}, {}), 0);
 }
 
 TEST(Display, StopsAreFactorsOfTwo) {
