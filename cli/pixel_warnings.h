@@ -1,4 +1,4 @@
-/// Warnings of samples and pixels that are no finite numbers.
+/// Warnings of samples and pixels that are no finite numbers, and of images that show little.
 #pragma once
 
 #include <string>
