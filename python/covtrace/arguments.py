@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, NoReturn
 
 import numpy
@@ -19,6 +20,30 @@ def refuse(name: str, value: Any, expected: str) -> NoReturn:
     if len(shown) > longest:
         shown = shown[:longest] + "…"
     raise UsageError(f"{name} is {shown}; expected {expected}")
+
+
+# Names in other renderers, and in the program's options, of the arguments of `render`, or what does their work.
+_SHOWN = "write the picture by image.write('picture.png', exposure=1, view='agx')"
+_FRAMES = "render each frame with its own shutter=(begin, end)"
+_OTHER_NAMES = {"samples": "spp", "num_samples": "spp", "spp_max": "max_spp", "size": "resolution", "width": "resolution",
+                "height": "resolution", "depth": "max_depth", "bounces": "max_depth", "max_bounces": "max_depth",
+                "denoise": "denoiser", "lights": "light", "lamp": "light", "world": "environment", "background": "environment",
+                "hdri": "environment", "envmap": "environment", "eye": "camera", "target": "camera", "fov": "camera",
+                "max_time": "time", "seconds": "time", "noise": "error", "integrator": "method", "search_path": "search_paths",
+                "scene_name": "gltf_scene", "shutter_time": "shutter", "focus_distance": "focus", "f_stop": "fstop", "callback": "progress",
+                **dict.fromkeys(("output", "png", "exposure", "view", "filename", "ocio_config"), _SHOWN),
+                **dict.fromkeys(("frame", "frames", "fps"), _FRAMES)}
+
+
+def refuse_unknown(function: str, given: Iterable[str], known: Collection[str]) -> None:
+    """Raises `TypeError`, as Python does, for names of arguments that a function does not have, and says what is meant."""
+    for name in given:
+        if name in known:
+            continue
+        text = f"{function}() has no argument {name!r}"
+        meant = _OTHER_NAMES.get(name.lower()) or next(iter(difflib.get_close_matches(name.lower(), known, 1)), None)
+        raise TypeError(f"{text}; help(covtrace.render) tells all" if meant is None
+                        else f"{text}; did you mean {meant!r}?" if meant in known else f"{text}; {meant}")
 
 
 def linear_of(name: str, values: ArrayLike) -> NDArray[numpy.float32]:
@@ -235,9 +260,10 @@ def camera_of(value: Any) -> dict[str, Any] | None:
 _LAMP = ("'camera' or '0,2.5,1', with 'power 40', 'radius 0.1' or 'colour 1,0.9,0.8' after it, or a list of such texts")
 
 
-def _lamp_in(text: Any) -> tuple[Any, float, tuple[float, float, float], float | None]:
+def _lamp_in(text: str) -> tuple[Any, float, tuple[float, float, float], float | None]:
     """Place or None for the camera's, radius, colour and power or None, as the program's option has them."""
-    if not isinstance(text, str) or len(words := text.split()) % 2 == 0:
+    words = text.split()
+    if len(words) % 2 == 0:
         refuse("light", text, _LAMP)
     at = None if words[0] == "camera" else vector_in(words[0])
     names = words[1::2]
@@ -258,9 +284,12 @@ def lamps_of(value: Any) -> list[tuple[Any, float, tuple[float, float, float], f
     if value is None:
         return []
     try:
-        return [_lamp_in(text) for text in ([value] if isinstance(value, str) else value)]
+        texts = [value] if isinstance(value, str) else list(value)
     except TypeError:
         refuse("light", value, _LAMP)
+    if not all(isinstance(text, str) for text in texts):  # such as a place in numbers
+        refuse("light", value, _LAMP)
+    return [_lamp_in(text) for text in texts]
 
 
 def function_of(name: str, value: Callable[..., Any] | None) -> Callable[..., Any] | None:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, ParamSpec, Protocol, TypeVar
 
 from . import _covtrace
-from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, lamps_of, layers_of, path_of, resolution_of,
-                        seconds_of, shutter_of)
+from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, lamps_of, layers_of, path_of, refuse_unknown,
+                        resolution_of, seconds_of, shutter_of)
 from .builder import SceneBuilder
 from .builder_calls import name_errors
 from .errors import UsageError
@@ -37,6 +39,23 @@ class Cancel(Protocol):
     def is_set(self) -> bool: ...
 
 
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+def _with_names_told(function: Callable[_P, _R]) -> Callable[_P, _R]:
+    """The function, which tells what is meant by an argument that it does not have."""
+    known = list(inspect.signature(function).parameters)
+
+    @functools.wraps(function)
+    def told(*arguments: _P.args, **options: _P.kwargs) -> _R:
+        refuse_unknown(function.__name__, options, known)
+        return function(*arguments, **options)
+
+    return told
+
+
+@_with_names_told
 def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            preset: Literal["draft", "preview", "final"] | None = None,
            method: Literal["uniform", "covariance", "hybrid"] = "hybrid",

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 import os
 import threading
 from collections.abc import Callable, Generator
 from concurrent.futures import Future
 from typing import Any
 
+from .arguments import refuse_unknown
 from .builder import SceneBuilder
 from .image import Image
 from .progress import Progress
@@ -101,4 +103,5 @@ def start(scene: str | os.PathLike[str] | Scene | SceneBuilder, **options: Any) 
     which the object has; `progress` and `preview` are called in the render's thread."""
     if "cancel" in options:
         raise TypeError("start() takes no 'cancel'; call cancel() of what it returns")
+    refuse_unknown("start", options, [name for name in inspect.signature(render).parameters if name != "scene"])
     return RunningRender(scene, options)

@@ -35,6 +35,7 @@ class Part(Closed):
     """
 
     _kind: str
+    _elsewhere = ""  # what else of it can be changed, for messages
 
     def __init__(self, description: _covtrace.SceneDescription, index: int = 0) -> None:
         self._description = description
@@ -52,7 +53,7 @@ class Part(Closed):
     def __getitem__(self, name: str) -> float | tuple[float, float, float] | None:
         values = self._values()
         if name not in values:
-            raise KeyError(f"there is no value {name!r}; there are {', '.join(values)}")
+            raise KeyError(f"there is no value {name!r}; there are {', '.join(values)}{self._elsewhere}")
         return values[name]
 
     def __setitem__(self, name: str, value: ArrayLike) -> None:
@@ -95,6 +96,7 @@ class Camera(Part, Placed):
     up and z forward in its own space."""
 
     _kind = "camera"
+    _elsewhere = "; look_at(eye, target) places it"
     _items = "fov"
 
     def look_at(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> None:
@@ -207,7 +209,7 @@ class Parts(Sequence[Any]):
     """All parts of one kind; those with names are found by their names, too. `kind`: what messages
     call one of them. `joins`: whether `make` takes all indices of a name, or else the first."""
 
-    _ELSEWHERE = {"light": " of its own; `environment` of render takes the place of what lights it instead"}
+    _ELSEWHERE = {"light": " of its own; `environment` and `light` of render take the place of what lights it instead"}
 
     def __init__(self, kind: str, make: Callable[..., Any], names: Sequence[str] | int, joins: bool = False) -> None:
         self._kind, self._make, self._joins = kind, make, joins

@@ -166,6 +166,16 @@ Shape "sphere" "float radius" 3
             covtrace.render(covtrace.Scene.from_string(scenes.LIT), environment=numpy.ones((8, 16, 3)))
         self.assertRegex(str(raised.exception), r"\Aenvironment is array\(\[\[\[1\., 1\., 1\.\],[^\n]{0,120}…; expected an image's path[^\n]*\Z")
 
+    def test_names_of_other_programs(self):
+        scene = covtrace.Scene.from_string(scenes.FURNACE)
+        for wrong, meant in (("samples", "did you mean 'spp'"), ("resolutoin", "did you mean 'resolution'"), ("fov", "did you mean 'camera'"),
+                             ("png", r"image\.write\('picture\.png'"), ("frames", "shutter="), ("qqq", r"help\(covtrace\.render\)")):
+            for call in (covtrace.render, covtrace.start):
+                with self.subTest(wrong), self.assertRaisesRegex(TypeError, f"^{call.__name__}.. has no argument '{wrong}'; .*{meant}"):
+                    call(scene, **{wrong: 4})
+        with self.assertRaisesRegex(covtrace.UsageError, r"light is \(0, 1, 2\); expected 'camera' or '0,2\.5,1'"):
+            covtrace.render(scene, light=(0, 1, 2))
+
 
 class Idle(unittest.TestCase):
     def test_an_option_that_changes_nothing_is_told(self):
