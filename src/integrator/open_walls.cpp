@@ -27,8 +27,9 @@ bool open_walls(SceneDescription& scene, const Geometry& geometry, const Texture
          "walls keep the sky and the key light from most of what is seen; the outermost (" +
              std::to_string(std::count(walls.begin(), walls.end(), true)) + " of " +
              std::to_string(walls.size()) +
-             " shapes) let that light in, as in viewers, and throw no shadows; '--light camera' "
-             "lights the room from the camera in its place"});
+             " shapes) let that light in, as in viewers, and throw no shadows; a lamp at the "
+             "camera "
+             "takes its place by the option light: \"camera\""});
     return true;
 }
 
