@@ -100,7 +100,8 @@ const SceneDescription& LitScene::lit_description(const std::string& isa) {
         return textures.eval_float(id, {uv, position, {}, {}, vertices});
     };
     geometry.set_alpha(alpha);
-    if (open_walls(description, geometry, textures)) {
+    has_open_walls = open_walls(description, geometry, textures);
+    if (has_open_walls) {
         geometry = Geometry(description, isa);
         geometry.set_alpha(alpha);
     }

@@ -37,6 +37,9 @@ struct LitScene {
     SceneDescription description;
     TextureStore textures;
     Geometry geometry;
+    /// Whether walls are there for the camera alone (open_walls.h): then the rays by which it sees
+    /// in perfect mirrors and through clear glass are rays of the camera, too.
+    bool has_open_walls = false;
     Lights lights;
     /// Materials, with reflectances as they are in the light of all `lights` together.
     MaterialStore materials;

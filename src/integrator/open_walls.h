@@ -9,8 +9,9 @@ namespace covtrace {
 
 /// Lets light pass the outermost walls of a scene that is lit by stand-ins (scene/defaults.h) where
 /// that brings it to what the camera sees, and the walls keep it off: of all rays the camera's
-/// alone meet them. Adds a warning. Returns whether it did: then `geometry`, of which alpha is to
-/// be set, is that of another scene and has to be built again. Deterministic.
+/// alone meet them, straight, in perfect mirrors and through clear glass. Adds a warning. Returns
+/// whether it did: then `geometry`, of which alpha is to be set, is that of another scene and has
+/// to be built again. Deterministic.
 bool open_walls(SceneDescription& scene, const Geometry& geometry, const TextureStore& textures);
 
 }  // namespace covtrace

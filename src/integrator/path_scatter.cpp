@@ -147,6 +147,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     pdf_ = s->pdf;
     specular_ = is_specular(s->lobe);
     sharp_so_far_ = sharp_so_far_ && specular_;
+    if (sharp_so_far_ && scene_.has_open_walls) ray_.kind = RayKind::camera;
     seen_clearly_ =
         seen_clearly_ && !is_diffuse(s->lobe) && sharp_lobe_roughness(surface.bsdf) < kSeenThrough;
     sharp_probability_ *= s->pdf;

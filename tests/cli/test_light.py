@@ -196,6 +196,11 @@ class Light(CliTest):
         with_ball, warnings = self.seen("--spp", "256", scene=dark + ball)
         self.assertIn("the outermost (1 of 2 shapes)", warnings[-1])
         self.assertLess(middle(with_ball), 0.7 * middle(image))
+        # A pane before the camera shows the wall, and no sky.
+        pane = 'Material "thindielectric"\nCoordSysTransform "camera"\nTranslate 0 0 1\nShape "disk" "float radius" 0.15\n'
+        through, warnings = self.seen("--spp", "256", "--max-depth", "2", scene=dark + pane)
+        self.assertIn("the outermost (1 of 2 shapes)", warnings[-1])
+        self.assertAlmostEqual(middle(through) / middle(image), 0.96, delta=0.04)
         # Outside, and where half of the room is open, the light that stands in is enough.
         for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0')):
             _, warnings = self.seen(scene=open_scene)
