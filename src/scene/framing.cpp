@@ -35,6 +35,12 @@ class Slab {
         low_ = std::max(low_, -across - slope_ * depth);
     }
     double middle() const { return (high_ - low_) / 2; }
+    /// The place nearest to `place` from which, at `depth`, both sides hold all points.
+    double held(double place, double depth) const {
+        const double reach = slope_ * depth;
+        return std::clamp(place, std::min(middle(), high_ + reach),
+                          std::max(middle(), -low_ - reach));
+    }
     /// The largest depth from which both sides hold all points.
     double depth() const { return -(high_ + low_) / (2 * slope_); }
 
@@ -42,6 +48,36 @@ class Slab {
     double slope_;
     double high_ = -kInfinity, low_ = -kInfinity;
 };
+
+/// Share of a picture that points fill along one of its sides, from a place of the camera. The
+/// margins at its ends are to be equal in the picture, not in space: what is further away takes
+/// less of it.
+class Filled {
+  public:
+    explicit Filled(double place) : place_(place) {}
+
+    void add(double across, double ahead) {
+        const double where = (across - place_) / ahead;
+        if (where > highest_.where) highest_ = {where, across, ahead};
+        if (where < lowest_.where) lowest_ = {where, across, ahead};
+    }
+    /// Where the points that are now at both ends are as far from the middle of the picture.
+    double middle() const {
+        return (highest_.across * lowest_.ahead + lowest_.across * highest_.ahead) /
+               (highest_.ahead + lowest_.ahead);
+    }
+
+  private:
+    struct End {
+        double where, across = 0, ahead = 1;
+    };
+    double place_;
+    End highest_{-kInfinity}, lowest_{kInfinity};
+};
+
+/// Other points come to the ends where the camera moves to a middle: few times, as the function of
+/// the place whose root is looked for is nearly straight.
+constexpr int kRounds = 4;
 
 }  // namespace
 
@@ -70,12 +106,22 @@ bool frame_all(SceneDescription& scene) {
     // A point has no extent: it is seen from a little before it
     const double before = nearest - 1e-3 * std::max(double(box.radius()), 1e-3);
     const double depth = std::min({across.depth(), upright.depth(), before});
+    double x = across.middle(), y = upright.middle();
+    for (int round = 0; round < kRounds && !box.empty(); ++round) {
+        Filled along_x(x), along_y(y);
+        visit_points(scene, [&](Vec3 p) {
+            const double ahead = along(p, forward) - depth;
+            along_x.add(along(p, right), ahead);
+            along_y.add(along(p, up), ahead);
+        });
+        x = across.held(along_x.middle(), depth);
+        y = upright.held(along_y.middle(), depth);
+    }
     Matrix4 m;
     Vec3 eye;
     for (int row = 0; row < 3; ++row) {
         const double axes[] = {double(right[row]), double(up[row]), double(forward[row])};
-        const double place =
-            axes[0] * across.middle() + axes[1] * upright.middle() + axes[2] * depth;
+        const double place = axes[0] * x + axes[1] * y + axes[2] * depth;
         for (size_t column = 0; column < 3; ++column)
             m.m[static_cast<size_t>(row)][column] = axes[column];
         m.m[static_cast<size_t>(row)][3] = place;

@@ -9,24 +9,28 @@
 namespace covtrace::test {
 namespace {
 
-/// Largest distances of the shapes' points from the middle of the picture, whose edges are at 1.
+/// Largest distances of the shapes' points from the middle of the picture, whose edges are at 1,
+/// and how far the middle between those on opposite sides is from it.
 struct Reach {
-    double x = 0, y = 0;
+    double x = 0, y = 0, off_x = 0, off_y = 0;
 };
 
 Reach reach(const SceneDescription& scene) {
     const Transform to_camera = scene.camera.camera_to_world.start().inverse();
     const double aspect = double(scene.film.width) / double(scene.film.height);
     const double slope = std::tan(double(scene.camera.fov) * M_PI / 360);
-    Reach most;
+    double low_x = kInfinity, low_y = kInfinity, high_x = -kInfinity, high_y = -kInfinity;
     visit_points(scene, [&](Vec3 p) {
         const Vec3 q = to_camera.point(p);
         EXPECT_GT(q.z, 0);
-        most.x = std::max(most.x, std::abs(double(q.x / q.z)) / (slope * std::max(1.0, aspect)));
-        most.y =
-            std::max(most.y, std::abs(double(q.y / q.z)) / (slope * std::max(1.0, 1 / aspect)));
+        const double x = double(q.x / q.z) / (slope * std::max(1.0, aspect));
+        const double y = double(q.y / q.z) / (slope * std::max(1.0, 1 / aspect));
+        low_x = std::min(low_x, x), high_x = std::max(high_x, x);
+        low_y = std::min(low_y, y), high_y = std::max(high_y, y);
     });
-    return most;
+    if (low_x > high_x) return {};  // nothing is there
+    return {std::max(high_x, -low_x), std::max(high_y, -low_y), (low_x + high_x) / 2,
+            (low_y + high_y) / 2};
 }
 
 TEST(GltfFraming, FillsPicturesOfAllShapes) {
@@ -34,7 +38,7 @@ TEST(GltfFraming, FillsPicturesOfAllShapes) {
     const std::vector<json> placed = {
         {{"scale", {9, 1, 1}}},          {{"scale", {1, 30, 2}}},
         {{"scale", {1e-3, 1e-3, 40}}},   {{"translation", {5e3, -2e3, 1e3}}},
-        {{"scale", {1e-6, 1e-6, 1e-6}}},
+        {{"scale", {1e-6, 1e-6, 1e-6}}}, {{"rotation", {0.7071068, 0, 0, 0.7071068}}},
     };
     for (const json& place : placed) {
         GltfFile file = wave_file(12);
@@ -45,6 +49,8 @@ TEST(GltfFraming, FillsPicturesOfAllShapes) {
             ASSERT_TRUE(frame_all(scene)) << place;
             const Reach most = reach(scene);
             EXPECT_NEAR(std::max(most.x, most.y), 0.9, 0.01) << place << ' ' << width;
+            EXPECT_NEAR(most.off_x, 0, 0.01) << place << ' ' << width;
+            EXPECT_NEAR(most.off_y, 0, 0.01) << place << ' ' << width;
             EXPECT_GT(scene.camera.focal_distance, 0);
         }
     }
