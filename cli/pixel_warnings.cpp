@@ -28,8 +28,8 @@ void warn_of_nothing(const std::string& view) {
 }
 
 void warn_of_overexposure(int stops, float exposure) {
-    say("warning: --png: half of what has light is more than twice as bright as white; --exposure "
-        "{:g} shows it\n",
+    say("warning: half of what has light in the PNG is more than twice as bright as white; "
+        "--exposure {:g} shows it\n",
         exposure - float(stops));
 }
 
