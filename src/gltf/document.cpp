@@ -124,6 +124,10 @@ uint32_t word_at(std::string_view bytes, size_t offset) {
 /// library overlooks the eight bytes of the second chunk's header.
 std::string_view json_chunk(std::string_view bytes, const std::string& name) {
     constexpr size_t kHeader = 12, kChunk = 8;
+    // The version decides where lengths stand
+    if (const uint32_t version = word_at(bytes, 4); bytes.size() >= kHeader && version != 2)
+        throw Error(ErrorKind::scene, name + ": binary glTF of version " + std::to_string(version) +
+                                          "; expected version 2");
     const size_t total = word_at(bytes, 8), length = word_at(bytes, kHeader);
     const auto holds = [&](size_t begin, size_t size) {
         return begin <= total && size <= total - begin;
@@ -133,9 +137,6 @@ std::string_view json_chunk(std::string_view bytes, const std::string& name) {
     if (total > bytes.size() || !holds(kHeader + kChunk, length) ||
         (has_second && !holds(second + kChunk, word_at(bytes, second))))
         throw Error(ErrorKind::scene, name + ": the binary glTF file is cut short");
-    if (const uint32_t version = word_at(bytes, 4); version != 2)
-        throw Error(ErrorKind::scene, name + ": binary glTF of version " + std::to_string(version) +
-                                          "; expected version 2");
     return bytes.substr(kHeader + kChunk, length);
 }
 

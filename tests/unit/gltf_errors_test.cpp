@@ -37,6 +37,13 @@ TEST(GltfErrors, HoldsTheLengthsOfBinaryFilesAgainstTheirBytes) {
             EXPECT_TRUE(contains(with_more(at, more), "cut short")) << at << ' ' << more;
     for (const uint32_t more : {4u, 8u})
         EXPECT_TRUE(contains(with_more(20 + json_length, more), "cut short")) << more;
+    // A file of version 1 has the length of its JSON where version 2 has that of a chunk's header
+    std::string old = whole;
+    const uint32_t words[] = {1, static_cast<uint32_t>(whole.size()), json_length, 0};
+    std::memcpy(old.data() + 4, words, sizeof words);
+    EXPECT_EQ(
+        failure_of([&] { read_gltf(folder.write("old.glb", old)); }).message,
+        (folder.path() / "old.glb").string() + ": binary glTF of version 1; expected version 2");
 }
 
 /// The square with one thing changed.
