@@ -22,7 +22,7 @@ from .scene_warnings import Place, place_of_caller, place_of_thread
 class RunningRender:
     """A render in a thread of its own, as `start` returns it.
 
-    progress: the latest `Progress`, None before the first.
+    progress: the latest `Progress`, None before the first; its `fraction` is 1 once a complete image is there.
     image: the latest image: of the samples so far, None before the first round has ended; at last
         the delivered one.
 
@@ -53,6 +53,8 @@ class RunningRender:
             self._future.set_exception(error)
             return
         self.image = image
+        if self.progress is not None and image.complete:
+            self.progress = self.progress._replace(fraction=1.0, remaining=0.0)
         self._future.set_result(image)
 
     def _note_progress(self, progress: Progress) -> None:

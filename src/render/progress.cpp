@@ -29,8 +29,10 @@ void Monitor::update(Phase phase, double fraction, double samples_per_pixel) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock) return;
     const double now = elapsed();
-    if (last_report_ >= 0 && now - last_report_ < interval_) return;
+    // The first report of a phase may be its only one for long
+    if (last_report_ >= 0 && now - last_report_ < interval_ && phase == last_phase_) return;
     last_report_ = now;
+    last_phase_ = phase;
     report_({phase, fraction, samples_per_pixel, now, remaining(now, fraction), error_});
 }
 

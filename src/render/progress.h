@@ -28,8 +28,8 @@ struct Progress {
 class Monitor {
   public:
     using Clock = std::chrono::steady_clock;
-    /// Makes a monitor that calls `report` at most every `interval` seconds, from one thread at a
-    /// time.
+    /// Makes a monitor that calls `report` at most every `interval` seconds, and where a phase
+    /// begins, from one thread at a time.
     explicit Monitor(std::function<void(const Progress&)> report = {}, double interval = 0.1,
                      Clock::time_point start = Clock::now());
 
@@ -43,7 +43,8 @@ class Monitor {
     /// Asks passes to return early from `elapsed` seconds on, so that the film can be kept.
     void pause_at(double elapsed) { pause_at_ = elapsed; }
     bool pause_is_due() const { return elapsed() >= pause_at_; }
-    /// Reports, unless the last report is too recent or another thread is reporting.
+    /// Reports, unless the last report is too recent, of the same phase, or another thread is
+    /// reporting.
     void update(Phase phase, double fraction, double samples_per_pixel);
     /// Sets the error that the following reports tell.
     void set_error(double error) { error_ = error; }
@@ -66,6 +67,7 @@ class Monitor {
     std::atomic<double> pause_at_{std::numeric_limits<double>::infinity()};
     std::mutex mutex_;
     double last_report_ = -1;
+    Phase last_phase_{};
     double begin_ = 0, begin_fraction_ = -1;  ///< the first report of a fraction
 };
 

@@ -27,6 +27,7 @@ class Running(unittest.TestCase):
         self.assertIs(running.image, image)
         self.assertTrue(covtrace.compare(image, covtrace.render(self.scene(), **options)).identical)
         self.assertIn("done", repr(running))
+        self.assertEqual((running.progress.fraction, running.progress.remaining), (1, 0))
 
     def test_images_and_progress_until_it_is_cancelled(self):
         seen, told, several = [], [], threading.Event()
@@ -46,6 +47,7 @@ class Running(unittest.TestCase):
         running.cancel()
         image = running.result(timeout=60)
         self.assertFalse(image.complete)
+        self.assertLess(running.progress.fraction, 1)
         self.assertGreater(len(told), 0)
         # Each image has more samples than the one before, and shows the same scene
         counts = [float(i["samples"].mean()) for i in (*seen, image)]
