@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/parallel.h"
 #include "core/vec.h"
+#include "reconstruction/coarse_to_fine.h"
 
 namespace covtrace {
 
@@ -51,19 +51,21 @@ Plane own_share(const BlendInput& input, const Denoised& denoised, const Likenes
             }
     }
     Plane share(w, h, kPriorShare);
-    parallel_for_rows(w, h, [&](int y) {
-        for (int x = 0; x < w; ++x) {
-            Likeness::Window weights;
-            likeness.weigh(x, y, weights);
-            std::array<float, kParts> sum;
-            weighted_sums(sums, weights, x, y, sum.data());
-            const float alike = sum[kPixels],
-                        prior = sum[kPrior] * likeness.most(x, y, w, h) / alike,
-                        prior_share = kPriorShare / (1 + sum[kLost] / alike),
-                        all = sum[kSquare] + sum[kLost] + prior;
-            if (all > 0)
-                share(x, y) = std::clamp((sum[kProduct] + prior_share * prior) / all, 0.0f, 1.0f);
-        }
+    const auto judge = [&](int x, int y) {
+        Likeness::Window weights;
+        likeness.weigh(x, y, weights);
+        std::array<float, kParts> sum;
+        weighted_sums(sums, weights, x, y, sum.data());
+        const float alike = sum[kPixels], prior = sum[kPrior] * likeness.most(x, y, w, h) / alike,
+                    prior_share = kPriorShare / (1 + sum[kLost] / alike),
+                    all = sum[kSquare] + sum[kLost] + prior;
+        if (all > 0)
+            share(x, y) = std::clamp((sum[kProduct] + prior_share * prior) / all, 0.0f, 1.0f);
+    };
+    const auto alike = [&](int x, int y, int u, int v) { return likeness.are_alike(x, y, u, v); };
+    coarse_to_fine(w, h, judge, alike, [&](int x, int y, int left, int top, int right, int bottom) {
+        share(x, y) = 0.25f * ((share(left, top) + share(right, top)) +
+                               (share(left, bottom) + share(right, bottom)));
     });
     return share;
 }

@@ -193,8 +193,9 @@ HybridImage reconstruct_exposed(Halves halves, std::span<const covariance::Sym2<
     add_light_and_noise(halves, guess, likeness);
     // Mix the candidates, then our own mixture with the denoiser's image
     const ColorPlanes g = error_weights(halves, guess);
-    Selection s = select(halves, candidates, g, likeness, settings.mix);
-    if (settings.mix) lower_share_of_noisy(noise, g, candidates[0], likeness, s);
+    const std::array<Plane, 2> relative = relative_noise(noise, g);
+    Selection s = select(halves, candidates, g, likeness, settings.mix, relative);
+    if (settings.mix) lower_share_of_noisy(relative[0], s.around, candidates[0], s);
     fill_undershoot(candidates, halves, s);
     image.color = mean_of(s);
     if (clean) {

@@ -49,10 +49,11 @@ void Likeness::weigh(int x, int y, Window& weights) const {
         }
 }
 
-float Likeness::difference(int px, int py, int qx, int qy) const {
+bool Likeness::are_alike(int px, int py, int qx, int qy) const {
+    constexpr float kAlike = 0.5f;  // sum of squared differences of the guides
     float sum = 0;
     for (const MarginPlane& guide : guides_) sum += sqr(*guide.at(px, py) - *guide.at(qx, qy));
-    return sum;
+    return sum < kAlike;
 }
 
 void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,

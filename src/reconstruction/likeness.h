@@ -57,8 +57,8 @@ class Likeness {
     /// what is beyond its edges has no weight.
     float most(int x, int y, int w, int h) const;
 
-    /// The squared difference sum_k (guide_k(p) - guide_k(q))^2 of two pixels of the image.
-    float difference(int px, int py, int qx, int qy) const;
+    /// Whether two pixels of the image hardly differ: sums around them are as good as the same.
+    bool are_alike(int px, int py, int qx, int qy) const;
 
   private:
     std::vector<MarginPlane> guides_;

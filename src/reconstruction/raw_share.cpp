@@ -1,7 +1,6 @@
 #include "reconstruction/raw_share.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/parallel.h"
 #include "core/vec.h"
@@ -20,26 +19,25 @@ Plane pixel_noise(const Halves& halves) {
     return noise;
 }
 
-void lower_share_of_noisy(const Plane& noise, const ColorPlanes& g, const Candidate& raw,
-                          const Likeness& likeness, Selection& s) {
-    const int w = noise.width, h = noise.height;
-    std::vector<MarginPlane> sums(2, MarginPlane(w, h));  // relative noise, pixels
-    for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) {
-            const float weight = g[0](x, y) + g[1](x, y) + g[2](x, y);
-            sums[0](x, y) = noise(x, y) * weight;
-            sums[1](x, y) = weight > 0 ? 1.0f : 0.0f;  // holes have no samples and no noise
-        }
-    parallel_for_rows(w, h, [&](int y) {
-        for (int x = 0; x < w; ++x) {
-            const size_t i = size_t(y) * size_t(w) + size_t(x);
+std::array<Plane, 2> relative_noise(const Plane& noise, const ColorPlanes& g) {
+    std::array<Plane, 2> planes;
+    planes.fill(Plane(noise.width, noise.height));
+    for (size_t i = 0; i < noise.size(); ++i) {
+        const float weight = g[0][i] + g[1][i] + g[2][i];
+        planes[0][i] = noise[i] * weight;
+        planes[1][i] = weight > 0 ? 1.0f : 0.0f;  // holes have no samples and no noise
+    }
+    return planes;
+}
+
+void lower_share_of_noisy(const Plane& noise, std::span<const Plane> around, const Candidate& raw,
+                          Selection& s) {
+    parallel_for_rows(noise.width, noise.height, [&](int y) {
+        for (int x = 0; x < noise.width; ++x) {
+            const size_t i = size_t(y) * size_t(noise.width) + size_t(x);
             const float share = s.share[0][i];
             if (!(share > 0 && share < 1)) continue;
-            Likeness::Window weights;
-            likeness.weigh(x, y, weights);
-            std::array<float, 2> sum;
-            weighted_sums(sums, weights, x, y, sum.data());
-            const float own = *sums[0].at(x, y), mean = sum[0] / sum[1];
+            const float own = noise[i], mean = around[0][i] / around[1][i];
             if (!(own > mean && mean > 0)) continue;
             const float worth = share / (share + (1 - share) * own / mean),
                         others = (1 - worth) / (1 - share);

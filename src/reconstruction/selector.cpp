@@ -5,18 +5,15 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "reconstruction/coarse_to_fine.h"
 #include "reconstruction/luminance.h"
 
 namespace covtrace {
 
 namespace {
 
-constexpr size_t kMost = 12;  // most candidates
-/// Step between pixels whose shares are always judged; between them, pixels are judged that differ
-/// from those around them by kAlike, as sum of squared differences of the guides
-/// (docs/decisions/0094).
-constexpr int kCoarsest = 4;
-constexpr float kAlike = 0.5f;
+constexpr size_t kMost = 12;        // most candidates
+constexpr size_t kMostAlso = 2;     // most other planes that are summed
 constexpr int kSteps = 24;          // steps of the minimisation; more change nothing
 constexpr float kSmoothing = 0.5f;  // smoothing of the shares, pixels
 
@@ -73,54 +70,30 @@ void for_pairs(size_t n, const OfPair& of_pair) {
     });
 }
 
-/// Calls `set(x, y)` for every kCoarsest-th pixel in x and in y, then halves the step until all
-/// pixels are done: `between(x, y, left, top, right, bottom)` for pixels that are `alike(x, y, u,
-/// v)` to all of the nearest done ones, `set` for the others. Runs on all threads.
-template <typename Set, typename Alike, typename Between>
-void coarse_to_fine(int w, int h, const Set& set, const Alike& alike, const Between& between) {
-    parallel_for_rows(w / kCoarsest, (h + kCoarsest - 1) / kCoarsest, [&](int row) {
-        for (int x = 0; x < w; x += kCoarsest) set(x, row * kCoarsest);
-    });
-    for (int step = kCoarsest; step > 1; step /= 2) {
-        const int half = step / 2;
-        parallel_for_rows(w / half, (h + half - 1) / half, [&](int row) {
-            const int y = row * half;
-            const bool some_done = y % step == 0;
-            for (int x = some_done ? half : 0; x < w; x += some_done ? step : half) {
-                const int left = x - x % step, top = y - y % step,
-                          right = x == left ? left : left + step,
-                          bottom = y == top ? top : top + step;
-                const bool inside = right < w && bottom < h;
-                if (inside && alike(x, y, left, top) && alike(x, y, right, top) &&
-                    alike(x, y, left, bottom) && alike(x, y, right, bottom))
-                    between(x, y, left, top, right, bottom);
-                else
-                    set(x, y);
-            }
-        });
-    }
-}
-
-/// Mixes the candidates with shares from G, whose entries `gram(x, y, entries)` gives for a pixel.
-/// Pixels that are `alike` to those around them have the mean of their shares.
+/// Mixes the candidates with shares from G: `gram(x, y, sums)` gives its entries for a pixel and,
+/// after them, the sums of `also` other planes. Pixels that are `alike` to those around them have
+/// the mean of their shares and sums.
 template <typename Gram, typename Alike>
-Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, const Gram& gram,
-                const Alike& alike) {
-    const size_t n = candidates.size();
+Selection mixed(std::span<const Candidate> candidates, size_t also, int w, int h, bool mix,
+                const Gram& gram, const Alike& alike) {
+    const size_t n = candidates.size(), entries = n * (n + 1) / 2;
     Selection s;
     s.share.assign(n, Plane(w, h));
+    s.around.assign(also, Plane(w, h));
     const auto judge = [&](int x, int y) {
-        float entries[kMost * (kMost + 1) / 2], errors[kMost][kMost], share[kMost];
-        gram(x, y, entries);
+        float sums[kMost * (kMost + 1) / 2 + kMostAlso], errors[kMost][kMost], share[kMost];
+        gram(x, y, sums);
         for (size_t d = 0; d < n; ++d)
-            for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = entries[entry(c, d)];
+            for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = sums[entry(c, d)];
         minimise(errors, n, mix ? kSteps : 0, share);
         for (size_t c = 0; c < n; ++c) s.share[c](x, y) = share[c];
+        for (size_t k = 0; k < also; ++k) s.around[k](x, y) = sums[entries + k];
     };
     coarse_to_fine(w, h, judge, alike, [&](int x, int y, int left, int top, int right, int bottom) {
-        for (Plane& share : s.share)
-            share(x, y) = 0.25f * ((share(left, top) + share(right, top)) +
-                                   (share(left, bottom) + share(right, bottom)));
+        for (std::vector<Plane>* planes : {&s.share, &s.around})
+            for (Plane& p : *planes)
+                p(x, y) =
+                    0.25f * ((p(left, top) + p(right, top)) + (p(left, bottom) + p(right, bottom)));
     });
     // Smooth the shares: jumps from pixel to pixel would show as noise
     for (Plane& p : s.share) p = gaussian_blur(p, kSmoothing);
@@ -163,11 +136,11 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
     };
     // All pixels between are taken for alike: sums over a Gaussian hardly change from pixel to
     // pixel.
-    return mixed(candidates, w, h, mix, sums, [mix](int, int, int, int) { return mix; });
+    return mixed(candidates, 0, w, h, mix, sums, [mix](int, int, int, int) { return mix; });
 }
 
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
-                 const Likeness& likeness, bool mix) {
+                 const Likeness& likeness, bool mix, std::span<const Plane> also) {
     const int w = g[0].width, h = g[0].height;
     const size_t n = candidates.size();
     std::vector<MarginPlane> gram(n * (n + 1) / 2, MarginPlane(w, h));
@@ -177,6 +150,7 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
                 gram[e](x, y) = product_of_errors(halves, candidates[c], candidates[d], g,
                                                   size_t(y) * size_t(w) + size_t(x));
     });
+    for (const Plane& plane : also) gram.emplace_back(plane);
     const auto sums = [&](int x, int y, float* entries) {
         Likeness::Window weights;
         likeness.weigh(x, y, weights);
@@ -184,9 +158,9 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
     };
     // Means are for mixtures alone: the best single candidates of pixels have none.
     const auto alike = [&](int x, int y, int u, int v) {
-        return mix && likeness.difference(x, y, u, v) < kAlike;
+        return mix && likeness.are_alike(x, y, u, v);
     };
-    return mixed(candidates, w, h, mix, sums, alike);
+    return mixed(candidates, also.size(), w, h, mix, sums, alike);
 }
 
 }  // namespace covtrace

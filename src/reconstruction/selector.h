@@ -19,6 +19,7 @@ ColorPlanes error_weights(const Halves& halves, const ColorPlanes& brightness);
 struct Selection {
     std::array<ColorPlanes, 2> half;  ///< the mixture of each half; the image is their mean
     std::vector<Plane> share;         ///< share of each candidate
+    std::vector<Plane> around{};      ///< sums of other planes, where they were asked for
 };
 
 /// Mixes the candidates with the weights w >= 0, sum w = 1, that minimise around each pixel the
@@ -38,7 +39,8 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
 /// Mixes the candidates by the errors of the pixels around that are alike: pixels that are out of
 /// focus, dark or clean are not judged by sharp, bright or noisy ones beside them. Where the guides
 /// say that pixels hardly differ only some are judged, and mixtures in between are means of theirs.
+/// `also`: planes that are summed by the way over the pixels that judge, into `around`.
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
-                 const Likeness& likeness, bool mix = true);
+                 const Likeness& likeness, bool mix = true, std::span<const Plane> also = {});
 
 }  // namespace covtrace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruction/likeness.h"
 #include "reconstruction_images.h"
 
 namespace covtrace {
@@ -31,6 +32,21 @@ Halves with_pixel(float in_a, float in_b, float told) {
     return halves;
 }
 
+/// The sums of planes over the pixels around every pixel, all of which are alike.
+std::vector<Plane> sums_around(const std::array<Plane, 2>& planes) {
+    const std::vector<MarginPlane> within(planes.begin(), planes.end());
+    std::vector<Plane> sums(2, Plane(kSize, kSize));
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            Likeness::Window weights;
+            Likeness({}).weigh(x, y, weights);
+            std::array<float, 2> sum;
+            weighted_sums(within, weights, x, y, sum.data());
+            for (size_t k = 0; k < 2; ++k) sums[k](x, y) = sum[k];
+        }
+    return sums;
+}
+
 /// The mixture of kShare of the raw pixels with the truth, 1, after the share was lowered.
 Selection lowered(const Halves& halves, float share = kShare) {
     const Candidate raw{halves[0].color, halves[1].color};
@@ -41,8 +57,9 @@ Selection lowered(const Halves& halves, float share = kShare) {
         for (size_t c = 0; c < 3; ++c)
             for (size_t i = 0; i < raw[k][c].size(); ++i) s.half[k][c][i] += share * raw[k][c][i];
     }
-    lower_share_of_noisy(pixel_noise(halves), error_weights(halves, constant(1)), raw, Likeness({}),
-                         s);
+    const std::array<Plane, 2> noise =
+        relative_noise(pixel_noise(halves), error_weights(halves, constant(1)));
+    lower_share_of_noisy(noise[0], sums_around(noise), raw, s);
     return s;
 }
 
