@@ -14,7 +14,7 @@ namespace covtrace {
 struct FilmArray {
     std::string name;
     void* records = nullptr;
-    size_t record_size = 0;  ///< bytes
+    size_t record_size = 0;  ///< bytes, a multiple of 4
     size_t count = 0;
 };
 
@@ -22,6 +22,7 @@ struct FilmArray {
 inline std::vector<FilmArray> film_arrays(RenderState& state) {
     std::vector<FilmArray> arrays;
     const auto add = [&](const std::string& name, auto& values) {
+        static_assert(sizeof values[0] % 4 == 0);
         if (!values.empty())
             arrays.push_back({name, values.data(), sizeof values[0], values.size()});
     };
