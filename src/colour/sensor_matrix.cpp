@@ -32,6 +32,10 @@ Samples sampled(Function f) {
     return s;
 }
 
+double luminance_of(const Triple& c) {
+    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+}
+
 /// Light of which the part `factor` arrives, both at the wavelengths of observer_samples().
 class Eye {
   public:
@@ -49,7 +53,14 @@ class Eye {
                 sum[c] += observer_samples()[i].weight[c] * factor[i] * light[i] / d65_[i];
         return sum;
     }
-    /// The sensor's three values, in any unit.
+    /// Integral of D65 and CIE's y over nanometres.
+    double luminance_of_d65() const {
+        double relative = 0;
+        for (size_t i = 0; i < d65_.size(); ++i)
+            relative += luminance_of(observer_samples()[i].weight) / d65_[i];
+        return kLuminanceOfOne / relative;
+    }
+    /// The sensor's three values, the integrals over nanometres divided by kObserverStep.
     Triple response(const Samples& light, const Samples& factor) const {
         Triple sum{};
         for (size_t i = 0; i < light.size(); ++i)
@@ -81,13 +92,9 @@ std::vector<Samples> smooth_spectra() {
     return list;
 }
 
-double luminance_of(const Triple& c) {
-    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-}
-
 }  // namespace
 
-std::array<std::array<float, 3>, 3> sensor_matrix(const SensorCurves& sensor, float kelvin) {
+SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin) {
     const Eye eye(sensor);
     const Samples balanced = sampled([s = daylight_spectrum(kelvin)](double l) { return s.at(l); });
     const Samples white(balanced.size(), 1);
@@ -117,7 +124,7 @@ std::array<std::array<float, 3>, 3> sensor_matrix(const SensorCurves& sensor, fl
         add(white, kWeightOfWhite);
         for (const Samples& factor : spectra) add(factor, 1);
     }
-    return single_precision(whole.solve());
+    return {single_precision(whole.solve()), single_precision(values)};
 }
 
 }  // namespace covtrace

@@ -1,4 +1,4 @@
-/// The sensor of a camera, as a matrix on the colours of an image.
+/// The sensor of a camera, as matrices on the colours of an image.
 #pragma once
 
 #include <array>
@@ -7,8 +7,17 @@
 
 namespace covtrace {
 
-/// Matrix from linear Rec.709 to linear Rec.709 as the sensor shows it, balanced for daylight of
-/// this correlated colour temperature (kelvin, > 0; a black body below 4000 K).
+/// A sensor as it shows light.
+struct SensorMatrices {
+    /// From linear Rec.709 to linear Rec.709 as the sensor shows it.
+    std::array<std::array<float, 3>, 3> shown;
+    /// From the shown colour to the sensor's three values, in pbrt's units: the integrals, over
+    /// nanometres, of its curves times light whose integral with CIE's y is its luminance.
+    std::array<std::array<float, 3>, 3> values;
+};
+
+/// The matrices of a sensor, balanced for daylight of this correlated colour temperature (kelvin,
+/// > 0; a black body below 4000 K).
 ///
 /// pbrt-v4 integrates light with the sensor's curves and brings the result to XYZ by a matrix,
 /// fitted to the patches of a colour checker: under the light of the balance they shall look as the
@@ -17,6 +26,6 @@ namespace covtrace {
 /// the patches, and the smooth ones of colour/sigmoid_spectrum.h, each under D65 and under the
 /// light of the balance. Both lights themselves are within 1 % of pbrt's. How far single colours
 /// are from the spectral result is in docs/decisions/0100-sensors-as-matrices.md.
-std::array<std::array<float, 3>, 3> sensor_matrix(const SensorCurves& sensor, float kelvin);
+SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin);
 
 }  // namespace covtrace

@@ -16,8 +16,7 @@ struct Rgb64 {
 };
 
 constexpr int kFirst = 380, kLast = 780;
-constexpr int kStep = 5;  // of the samples for smooth functions
-constexpr size_t kSamples = (kLast - kFirst) / kStep + 1;
+constexpr size_t kSamples = (kLast - kFirst) / kObserverStep + 1;
 
 // CIE standard illuminant D65, relative power every 10 nm from 380 to 780 (CIE 15:2004, table T.1).
 constexpr std::array<double, 41> kD65{49.9755, 54.6482, 82.7549, 91.486,  93.4318, 86.6823, 104.865,
@@ -136,11 +135,13 @@ struct Observer {
     std::array<ObserverSample, kSamples> samples{};
     Observer() {
         for (size_t i = 0; i < kSamples; ++i) {
-            const double middle = kFirst + kStep * static_cast<double>(i);
+            const double middle = kFirst + kObserverStep * static_cast<double>(i);
             std::vector<double> at;
-            for (int l = -kStep; l <= kStep; ++l)
+            for (int l = -kObserverStep; l <= kObserverStep; ++l)
                 if (middle + l >= kFirst && middle + l <= kLast) at.push_back(middle + l);
-            const auto share = [middle](double l) { return 1 - std::abs(l - middle) / kStep; };
+            const auto share = [middle](double l) {
+                return 1 - std::abs(l - middle) / kObserverStep;
+            };
             samples[i] = {middle, quotient(integral(at, under_d65, share), white()).c};
         }
     }
@@ -212,8 +213,7 @@ Spectrum blackbody_spectrum(double kelvin) {
 }
 
 Rgb blackbody_radiance(double kelvin) {
-    constexpr double kWien = 2.897771955e6;         // nm K
-    constexpr double kLuminanceOfOne = 106.856895;  // pbrt's integral of CIE's y, nm
+    constexpr double kWien = 2.897771955e6;  // nm K
     const double largest = log_planck(kWien / kelvin, kelvin);
     const auto light = [](double l) { return response().at(l); };
     const auto relative = [&](double l) { return std::exp(log_planck(l, kelvin) - largest); };

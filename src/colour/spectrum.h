@@ -22,8 +22,14 @@ struct Spectrum {
     double at(double wavelength) const;
 };
 
-/// A sample of the observer for smooth functions, one every 5 nm: a wavelength (nanometres) and
-/// what light there adds to a colour.
+/// Integral of CIE's y over wavelengths in nanometres, as pbrt has it: luminance of light of 1 at
+/// all of them.
+inline constexpr double kLuminanceOfOne = 106.856895;
+
+/// Distance of the observer's samples, nanometres.
+inline constexpr int kObserverStep = 5;
+/// A sample of the observer for smooth functions, one every kObserverStep: a wavelength
+/// (nanometres) and what light there adds to a colour.
 struct ObserverSample {
     double wavelength = 0;
     std::array<double, 3> weight{};  ///< red, green, blue

@@ -157,9 +157,12 @@ void set_sensor(Entity& e, FilmDescription& film) {
     if (const std::string name = p.text("sensor", "cie1931"); name != "cie1931") {
         const SensorCurves* sensor = find_sensor(name);
         if (!sensor) e.refuse("sensor", unknown_name("sensor", name, sensor_names()));
-        film.sensor = sensor_matrix(*sensor, balance > 0 ? balance : 6500);
+        const SensorMatrices matrices = sensor_matrices(*sensor, balance > 0 ? balance : 6500);
+        film.sensor = matrices.shown;
+        film.sensor_values = matrices.values;
     } else if (balance > 0) {
         film.sensor = white_balance(balance);
+        film.sensor_values = xyz_before_balance(balance);
     }
 }
 

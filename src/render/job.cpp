@@ -23,6 +23,7 @@ PassContext pass_context(const RenderScene& scene, const RenderOptions& options)
             imaging_scale(d),
             d.film.max_component_value,
             d.film.sensor,
+            d.film.sensor_values,
             kept_surfaces(d.film, options),
             {}};
 }

@@ -116,22 +116,24 @@ CameraPath begin_path(const PassContext& context, int x, int y, uint32_t index) 
     return {film, u.lens, u.time, ray, sampler, position.weight};
 }
 
+Rgb product(const std::array<std::array<float, 3>, 3>& matrix, Rgb c) {
+    const auto channel = [&](size_t i) {
+        return matrix[i][0] * c.r + matrix[i][1] * c.g + matrix[i][2] * c.b;
+    };
+    return {channel(0), channel(1), channel(2)};
+}
+
 /// Makes a sample for the film from a path.
 FilmSample film_sample(const PassContext& context, const CameraPath& start,
                        const PathResult& path) {
     FilmSample s;
     s.rays = uint32_t(path.rays.total());
     const auto exposed = [&](Rgb c) {
-        const Rgb light = c * (start.ray.weight * context.imaging_scale);
-        const auto channel = [&](size_t i) {
-            const auto& row = context.sensor[i];
-            return row[0] * light.r + row[1] * light.g + row[2] * light.b;
-        };
-        return Rgb{channel(0), channel(1), channel(2)};
+        return product(context.sensor, c * (start.ray.weight * context.imaging_scale));
     };
     s.radiance = exposed(path.radiance);
     s.in_view = exposed(path.in_view);
-    const float largest = max_component(s.radiance);
+    const float largest = max_component(product(context.sensor_values, s.radiance));
     const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
     s.radiance *= limit;
     s.in_view *= limit;

@@ -44,13 +44,15 @@ struct PassStatistics {
 };
 
 /// Settings that every pass shares. `imaging_scale` and `max_component` turn radiance into film
-/// values as pbrt does: exposure time times iso / 100, then a limit on the largest component.
+/// values as pbrt does: exposure time times iso / 100, then a limit on the largest of the sensor's
+/// values.
 struct PassContext {
     const RenderScene& scene;
     uint64_t seed = 0;
     int max_depth = 5;
     float imaging_scale = 1, max_component = kInfinity;
     std::array<std::array<float, 3>, 3> sensor{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::array<std::array<float, 3>, 3> sensor_values{};                   ///< as FilmDescription's
     FilmDescription::Surfaces surfaces = FilmDescription::Surfaces::none;  ///< FilmSample::surface
     Shard shard = {};                                                      ///< the tiles to trace
     uint32_t half = 0, halves = 1;

@@ -202,7 +202,13 @@ struct FilmDescription {
     float iso = 100;
     /// Matrix from linear Rec.709 to linear Rec.709 as the sensor and its white balance show it.
     std::array<std::array<float, 3>, 3> sensor{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    float max_component_value = kInfinity;  ///< largest value of a sample's channels
+    /// Matrix from the colour that the sensor shows to its three values: XYZ before the white
+    /// balance, or those of a camera.
+    std::array<std::array<float, 3>, 3> sensor_values{{{0.41239080f, 0.35758434f, 0.18048079f},
+                                                       {0.21263901f, 0.71516868f, 0.07219232f},
+                                                       {0.01933082f, 0.11919478f, 0.95053215f}}};
+    /// Largest of the sensor's values for a sample, which is dimmed to it as a whole.
+    float max_component_value = kInfinity;
     Surfaces surfaces = Surfaces::none;
     SourceLocation where;
 };
@@ -249,9 +255,9 @@ struct SceneDescription {
     /// defaults. Empty where the file has one, or where another one took the place.
     std::optional<Warning> no_camera, no_lights;
     bool has_stand_in_lights = false;  ///< whether `complete` gave it lights
-    /// Bounds of the shapes at some moments of a whole animation, in world space, where the scene is
-    /// a frame of one: a camera and lights that the file lacks are placed by them, and stand still.
-    /// Else empty.
+    /// Bounds of the shapes at some moments of a whole animation, in world space, where the scene
+    /// is a frame of one: a camera and lights that the file lacks are placed by them, and stand
+    /// still. Else empty.
     Bounds3 swept;
     /// Camera and environment in place of the file's, and lamps beside its own, as text for a
     /// render's identity; empty: its own, and none.

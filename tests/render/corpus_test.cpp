@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"film-gbuffer", Where::everywhere, Rgb(0.5f)},
                     Known{"film-iso", Where::everywhere, Rgb(2.5f)},
                     Known{"film-exposure", Where::everywhere, Rgb(0.25f)},
-                    Known{"film-maxcomponentvalue", Where::everywhere, Rgb(2, 1, 0.5f)},
+                    Known{"film-maxcomponentvalue", Where::everywhere, {3.1432f, 1.5716f, 0.7858f}},
                     Known{"film-whitebalance", Where::everywhere, Rgb(1), 0.02},
                     Known{"film-sensor", Where::everywhere, {0.9885f, 0.9916f, 0.9965f}, 2e-3},
                     Known{"light-point", Where::everywhere, kLit},

@@ -77,7 +77,7 @@ const std::vector<Case>& cases() {
 
 TEST(Sensor, WhiteUnderBothLightsIsPbrts) {
     for (const Case& c : cases()) {
-        const auto m = sensor_matrix(*find_sensor(c.sensor), c.kelvin);
+        const auto m = sensor_matrices(*find_sensor(c.sensor), c.kelvin).shown;
         for (const Shown& white : {c.white, c.balanced_white}) {
             const Rgb got = shown(m, white.seen);
             EXPECT_LT(largest_difference(got, white.through), 0.01f * max_component(white.through))
@@ -88,7 +88,7 @@ TEST(Sensor, WhiteUnderBothLightsIsPbrts) {
 
 TEST(Sensor, SurfacesAreNearThoseOfSpectra) {
     for (const Case& c : cases()) {
-        const auto m = sensor_matrix(*find_sensor(c.sensor), c.kelvin);
+        const auto m = sensor_matrices(*find_sensor(c.sensor), c.kelvin).shown;
         for (const Shown& s : c.surfaces) {
             const Rgb got = shown(m, s.seen);
             EXPECT_LT(largest_difference(got, s.through), 0.15f * max_component(s.through))
@@ -107,13 +107,30 @@ TEST(Sensor, AllOfThemShowTheirBalanceAlmostWhite) {
         for (const float kelvin : {2500.0f, 4500.0f, 6500.0f, 12000.0f}) {
             const Triple xyz = daylight_white(kelvin);
             const Triple light = product(inverse(kXyzFromRec709), xyz);
-            const Rgb got = shown(sensor_matrix(*sensor, kelvin),
+            const Rgb got = shown(sensor_matrices(*sensor, kelvin).shown,
                                   {static_cast<float>(light[0]), static_cast<float>(light[1]),
                                    static_cast<float>(light[2])});
             EXPECT_LT(largest_difference(got, Rgb(1)), 0.06f)
                 << name << " " << kelvin << ": " << got.r << " " << got.g << " " << got.b;
         }
     }
+}
+
+TEST(Sensor, ValuesAreTheIntegralsOfItsCurves) {
+    // Integrals, by nanometres, of pbrt's curves times D65 over that of the CIE's y times D65.
+    struct Known {
+        const char* sensor;
+        Rgb of_d65;
+    };
+    for (const Known& k : {Known{"nikon_d850", {0.3717f, 0.8486f, 0.6868f}},
+                           Known{"sony_ilce_9", {0.3548f, 0.9439f, 0.7273f}},
+                           Known{"canon_eos_100d", {0.416f, 0.9669f, 0.721f}}})
+        for (const float kelvin : {6500.0f, 3200.0f}) {
+            const SensorMatrices m = sensor_matrices(*find_sensor(k.sensor), kelvin);
+            const Rgb got = shown(m.values, shown(m.shown, Rgb(1)));
+            EXPECT_LT(largest_difference(got, k.of_d65), 0.01f * max_component(k.of_d65))
+                << k.sensor << " " << got.r << " " << got.g << " " << got.b;
+        }
 }
 
 TEST(Daylight, HasTheChromaticityThatItIsNamedBy) {

@@ -125,10 +125,10 @@ TEST(SceneView, GBuffersKeepTheFirstSurfaces) {
 TEST(SceneView, NamedSensorsReplaceTheWhiteBalance) {
     const auto scene = read_options("Film \"rgb\" \"string sensor\" \"nikon_d850\"");
     EXPECT_EQ(warnings_of(scene), "");
-    EXPECT_EQ(scene.film.sensor, sensor_matrix(*find_sensor("nikon_d850"), 6500));
+    EXPECT_EQ(scene.film.sensor, sensor_matrices(*find_sensor("nikon_d850"), 6500).shown);
     const auto warm =
         read_options("Film \"rgb\" \"string sensor\" \"nikon_d850\" \"float whitebalance\" 3200");
-    EXPECT_EQ(warm.film.sensor, sensor_matrix(*find_sensor("nikon_d850"), 3200));
+    EXPECT_EQ(warm.film.sensor, sensor_matrices(*find_sensor("nikon_d850"), 3200).shown);
 }
 
 TEST(SceneView, SphericalCameras) {
@@ -219,10 +219,14 @@ TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = 0; j < 3; ++j) EXPECT_NEAR(scene.film.sensor[i][j], i == j ? 1 : 0, 2e-3f);
     // The light is a candle's, and the image is balanced for it.
-    const auto warm = read_options("Film \"rgb\" \"float whitebalance\" 2800").film.sensor;
+    const FilmDescription film = read_options("Film \"rgb\" \"float whitebalance\" 2800").film;
+    const auto& warm = film.sensor;
     const Rgb candle = emission_colour(blackbody_spectrum(2800));
     for (const auto& row : warm)
         EXPECT_NEAR(row[0] * candle.r + row[1] * candle.g + row[2] * candle.b, 1, 5e-3f);
+    // A limit is that of XYZ before the balance: of the candle's, whose Y is 1.
+    const auto& y = film.sensor_values[1];
+    EXPECT_NEAR(y[0] + y[1] + y[2], 1, 5e-3f);
 }
 
 TEST(SceneView, WindowsOfOtherThanFourValuesAreIgnoredAsInPbrt) {
