@@ -124,6 +124,17 @@ SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin) {
         add(white, kWeightOfWhite);
         for (const Samples& factor : spectra) add(factor, 1);
     }
+    // Fire and lamps, whose blue is small beside their red.
+    for (const double glowing : {1500.0, 2000.0, 2850.0}) {
+        const Samples light =
+            sampled([s = blackbody_spectrum(glowing)](double l) { return s.at(l); });
+        const double scale = 1 / luminance_of(eye.colour(light, white));
+        whole.add(eye.colour(light, white), product(from_sensor, eye.response(light, white)),
+                  sqr(scale));
+    }
+    Matrix3 values = inverse(from_sensor);
+    for (Triple& row : values)
+        for (double& v : row) v *= kObserverStep / eye.luminance_of_d65();
     return {single_precision(whole.solve()), single_precision(values)};
 }
 

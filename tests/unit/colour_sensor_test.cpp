@@ -133,6 +133,17 @@ TEST(Sensor, ValuesAreTheIntegralsOfItsCurves) {
         }
 }
 
+TEST(Sensor, FireIsNearThatOfSpectra) {
+    // Black bodies of 1500 and 2500 K, by pbrt-v4's formulas. The first one's blue is below 0.
+    const auto m = sensor_matrices(*find_sensor("nikon_d850"), 6000).shown;
+    for (const Shown& fire : {Shown{{3.264f, 0.4342f, 0}, {3.2776f, 0.484f, 0.0328f}},
+                              Shown{{2.0676f, 0.7694f, 0.1396f}, {2.0195f, 0.7918f, 0.2036f}}}) {
+        const Rgb got = shown(m, fire.seen);
+        EXPECT_LT(largest_difference(got, fire.through), 0.025f * max_component(fire.through))
+            << got.r << " " << got.g << " " << got.b;
+    }
+}
+
 TEST(Daylight, HasTheChromaticityThatItIsNamedBy) {
     // Standard illuminants D50 and D65 (CIE 15:2004), whose temperatures are of the old constant
     // c2.
