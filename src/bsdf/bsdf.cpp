@@ -43,6 +43,9 @@ bool is_specular(const DiffuseTransmissionBsdf&) {
 bool is_specular(const CoatedDiffuseBsdf&) {
     return false;
 }
+bool is_specular(const HazyDiffuseBsdf&) {
+    return false;
+}
 bool is_specular(const MeasuredBsdf&) {
     return false;
 }
@@ -115,8 +118,10 @@ bool has_diffuse_lobe(const Bsdf& bsdf) {
     if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
         return !is_black(layered->sheen.colour) || has_diffuse_lobe(base_of(*layered));
     if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf)) return body->is_left;
+    if (const auto* coated = std::get_if<CoatedConductorBsdf>(&bsdf)) return coated->gap.scatters();
     return std::holds_alternative<DiffuseBsdf>(bsdf) ||
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
+           std::holds_alternative<HazyDiffuseBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
 }
 
@@ -129,13 +134,15 @@ bool has_sharp_lobe(const Bsdf& bsdf) {
     return std::holds_alternative<ConductorBsdf>(bsdf) ||
            std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
            std::holds_alternative<DielectricBsdf>(bsdf) ||
-           std::holds_alternative<CoatedDiffuseBsdf>(bsdf);
+           std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
+           std::holds_alternative<HazyDiffuseBsdf>(bsdf);
 }
 
 float sharp_lobe_roughness(const Bsdf& bsdf) {
     const auto larger = [](const auto& b) { return std::max(b.alpha_x, b.alpha_y); };
     if (const auto* coated = std::get_if<CoatedConductorBsdf>(&bsdf))
         return std::max(larger(coated->coat), larger(coated->metal));
+    if (const auto* hazy = std::get_if<HazyDiffuseBsdf>(&bsdf)) return larger(hazy->coat);
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf); measured && has_sharp_lobe(bsdf))
         return measured->brdf->alpha();
     if (const auto* body = std::get_if<SubsurfaceBsdf>(&bsdf))

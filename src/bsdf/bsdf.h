@@ -153,6 +153,13 @@ struct SubsurfaceBsdf {
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
 };
+/// A medium that scatters in the gap below a coat. See coated_walk.h.
+struct GapScattering {
+    Rgb albedo{};     ///< share of the light that it keeps
+    float g = 0;      ///< mean cosine of the phase function, in (-1, 1)
+    int events = 10;  ///< most reflections and scatterings of a walk
+    bool scatters() const { return max_component(albedo) > 0; }
+};
 /// A metal below a dielectric coat; two-sided. See coated_conductor.cpp.
 struct CoatedConductorBsdf {
     DielectricBsdf coat;
@@ -162,6 +169,17 @@ struct CoatedConductorBsdf {
     int samples = 1;      ///< walks per evaluation
     /// Part of the seed of `eval`'s walks: equal pairs have equal walks where this is the same.
     uint32_t place = 0;
+    GapScattering gap = {};
+};
+/// A Lambertian base below a dielectric coat, where the gap between them scatters; two-sided. See
+/// hazy_diffuse.cpp.
+struct HazyDiffuseBsdf {
+    DielectricBsdf coat;
+    DiffuseBsdf base;
+    float thickness = 0;  ///< of the gap, in optical depths
+    int samples = 1;      ///< walks per evaluation
+    uint32_t place = 0;   ///< as CoatedConductorBsdf's
+    GapScattering gap;
 };
 /// A pane without thickness; both faces' reflections together. See thin_dielectric.cpp.
 struct ThinDielectricBsdf {
@@ -199,7 +217,8 @@ struct ClearcoatLobe {
 };
 /// A surface under a sheen, under a clear coat.
 struct LayeredBsdf {
-    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf, ThinDielectricBsdf>
+    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf, HazyDiffuseBsdf,
+                 ThinDielectricBsdf>
         base;
     SheenLobe sheen;
     ClearcoatLobe coat;
@@ -228,8 +247,8 @@ struct HairBsdf {
 
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
-                 DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf, InterfaceBsdf,
-                 MeasuredBsdf, UnlitBsdf, LayeredBsdf, HairBsdf, SubsurfaceBsdf>;
+                 DiffuseTransmissionBsdf, CoatedConductorBsdf, HazyDiffuseBsdf, ThinDielectricBsdf,
+                 InterfaceBsdf, MeasuredBsdf, UnlitBsdf, LayeredBsdf, HairBsdf, SubsurfaceBsdf>;
 
 /// The value f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);

@@ -18,13 +18,13 @@
 /// Carlo methods for light transport simulation", chapter 9).
 ///
 /// A smooth coat over a smooth metal is a mirror: the series is summed.
+///
+/// Where the gap scatters, the walk is that of coated_walk.h.
 #include <array>
 #include <bit>
 
+#include "bsdf/coated_walk.h"
 #include "bsdf/fresnel.h"
-#include "bsdf/ggx.h"
-#include "bsdf/models.h"
-#include "core/rng.h"
 #include "core/warp.h"
 
 namespace covtrace {
@@ -39,80 +39,18 @@ bool is_metal_smooth(const CoatedConductorBsdf& b) {
 float attenuation(const CoatedConductorBsdf& b, Vec3 w) {
     return std::exp(-b.thickness / std::abs(w.z));
 }
-float power_heuristic(float a, float b) {
-    return sqr(a) / (sqr(a) + sqr(b));
+/// Whether coat and metal are mirrors.
+bool are_borders_smooth(const CoatedConductorBsdf& b) {
+    return is_smooth(b) && is_metal_smooth(b);
 }
-
-/// A direction through the coat, or off its inside: which of the two was decided before, so that
-/// the weight holds Fresnel's share. For refraction it has no factor 1 / eta^2.
-struct Crossing {
-    Vec3 w;
-    float weight = 0;
-    float pdf = 0;  ///< density of refraction through a rough coat, else 1
-};
-
-Ggx coat_ggx(const CoatedConductorBsdf& b) {
-    return {b.coat.alpha_x, b.coat.alpha_y};
-}
-
-/// Samples a refraction from the outside direction w (w.z > 0) to one inside (z < 0).
-std::optional<Crossing> enter(const CoatedConductorBsdf& b, Vec3 w, Vec2 u) {
-    const float eta = b.coat.eta;
-    if (is_smooth(b)) {
-        const DielectricFresnel f = fresnel_dielectric(w.z, eta);
-        if (f.cos_t == 0) return {};
-        return Crossing{{-w.x / eta, -w.y / eta, -f.cos_t}, 1 - f.reflectance, 1};
-    }
-    const Ggx ggx = coat_ggx(b);
-    const Vec3 m = ggx.sample_visible_normal(w, u);
-    const float cos_o = dot(w, m);
-    if (!(cos_o > 0)) return {};
-    const DielectricFresnel f = fresnel_dielectric(cos_o, eta);
-    const Vec3 in = normalize(m * (cos_o / eta - f.cos_t) - w / eta);
-    if (!(in.z < 0) || !(f.reflectance < 1)) return {};
-    const float pdf =
-        ggx.visible_normal_pdf(w, m) * sqr(eta) * f.cos_t / sqr(eta * f.cos_t - cos_o);
-    if (!(pdf > 0) || !std::isfinite(pdf)) return {};
-    return Crossing{in, (1 - f.reflectance) * ggx.g2_over_g1(w, mirror_z(in)), pdf};
-}
-
-/// Density of `enter` on a rough coat to give the direction `in`.
-float enter_pdf(const CoatedConductorBsdf& b, Vec3 w, Vec3 in) {
-    const float eta = b.coat.eta;
-    const Vec3 half = w + in * eta;
-    const float length2 = length_squared(half);
-    if (!(length2 > 0)) return 0;
-    const Vec3 m = half / std::copysign(std::sqrt(length2), half.z);
-    if (!(dot(w, m) > 0) || !(dot(in, m) < 0)) return 0;
-    return coat_ggx(b).visible_normal_pdf(w, m) * sqr(eta) * std::abs(dot(in, m)) / length2;
-}
-
-/// Samples a reflection off the coat's inside. `w` (z < 0) points back to where the walk came from;
-/// the result, with z < 0 too, is the direction in which the walk goes on.
-std::optional<Crossing> reflect_inside(const CoatedConductorBsdf& b, Vec3 w, Vec2 u) {
-    w = mirror_z(w);
-    const float eta = 1 / b.coat.eta;
-    if (is_smooth(b))
-        return Crossing{{-w.x, -w.y, -w.z}, fresnel_dielectric(w.z, eta).reflectance, 1};
-    const Ggx ggx = coat_ggx(b);
-    const Vec3 m = ggx.sample_visible_normal(w, u);
-    const float cos_o = dot(w, m);
-    if (!(cos_o > 0)) return {};
-    const Vec3 out = normalize(m * (2 * cos_o) - w);
-    if (!(out.z > 0)) return {};
-    return Crossing{mirror_z(out),
-                    fresnel_dielectric(cos_o, eta).reflectance * ggx.g2_over_g1(w, out), 1};
-}
-
-uint64_t bits_of(Vec3 w) {
-    return hash_combine(std::bit_cast<uint32_t>(w.x), std::bit_cast<uint32_t>(w.y),
-                        std::bit_cast<uint32_t>(w.z));
+CoatLayers<ConductorBsdf> layers(const CoatedConductorBsdf& b) {
+    return {b.coat, b.metal, b.thickness, b.gap};
 }
 
 /// Estimate of f - f_coat by one random walk; both directions are outside, z > 0.
 Rgb walk(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rng& rng) {
-    const auto first = enter(b, wo, rng.next_2d());
-    const auto last = enter(b, wi, rng.next_2d());
+    const auto first = enter_coat(b.coat, wo, rng.next_2d());
+    const auto last = enter_coat(b.coat, wi, rng.next_2d());
     if (!first) return {};
     const bool smooth_coat = is_smooth(b), smooth_metal = is_metal_smooth(b);
     Rgb sum, beta(first->weight / sqr(b.coat.eta) * attenuation(b, first->w));
@@ -133,11 +71,12 @@ Rgb walk(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rng& rng) {
         beta *= s->weight * attenuation(b, up);
         const Vec3 below = -up;  // direction as the coat sees it
         if (!smooth_coat) {
-            const float share = smooth_metal ? 1 : power_heuristic(s->pdf, enter_pdf(b, wi, below));
+            const float share =
+                smooth_metal ? 1 : power_heuristic(s->pdf, enter_coat_pdf(b.coat, wi, below));
             sum += beta * eval(b.coat, below, wi) * (share / wi.z);
         }
         if (bounce + 1 >= b.bounces) break;
-        const auto back = reflect_inside(b, below, rng.next_2d());
+        const auto back = reflect_below_coat(b.coat, below, rng.next_2d());
         if (!back) break;
         in = back->w;
         beta *= back->weight * attenuation(b, in);
@@ -149,19 +88,14 @@ float eval_coat(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
     return is_smooth(b) ? 0 : eval(b.coat, wo, wi).r;
 }
 
-Rgb eval_base(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
-    constexpr float kGrazing = 1e-6f;  // below, the walk's quotients overflow
-    if (is_specular(b) || std::min(wo.z, wi.z) < kGrazing) return {};
-    const float cos_i = wi.z;
-    uint64_t hash_o = bits_of(wo), hash_i = bits_of(wi);
-    if (hash_o > hash_i && !b.metal.white) {
-        std::swap(wo, wi);
-        std::swap(hash_o, hash_i);
-    }
-    Rng rng(hash_combine(hash_o, hash_i, b.place));
-    Rgb sum;
-    for (int i = 0; i < b.samples; ++i) sum += walk(b, wo, wi, rng);
-    return sum * (cos_i / static_cast<float>(b.samples));
+/// Light that the gap and the metal reflect.
+CoatWalkSum eval_base(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
+    if (is_specular(b)) return {};
+    const auto one = [&](Vec3 o, Vec3 i, Rng& rng) {
+        return b.gap.scatters() ? CoatWalk(layers(b), o, i, rng).run()
+                                : CoatWalkSum{walk(b, o, i, rng), {}};
+    };
+    return mean_of_walks(wo, wi, !b.metal.white, b.place, b.samples, one);
 }
 
 /// Reflectance of smooth borders, with all bounces together.
@@ -179,6 +113,12 @@ Rgb smooth_reflectance(const CoatedConductorBsdf& b, Vec3 wo) {
     return Rgb(f.reflectance) + sqr(1 - f.reflectance) * once * sum;
 }
 
+/// Share of the light that goes down the gap with the given cosine, and straight up again, which
+/// is scattered on its way.
+float scattered_share(const CoatedConductorBsdf& b, float cosine) {
+    return b.gap.scatters() ? 1 - std::exp(-2 * b.thickness / cosine) : 0;
+}
+
 /// A metal alone whose roughness spreads light inside as far as metal and coat do together: a ray's
 /// slope inside changes by 2 alpha at the metal and by (1 - 1 / eta) alpha at each crossing of the
 /// coat.
@@ -193,17 +133,43 @@ ConductorBsdf effective_metal(const CoatedConductorBsdf& b) {
     return m;
 }
 
+/// Samples a smooth coat over a smooth metal whose gap scatters. One choice has all of the mirror's
+/// light; the other follows light into the gap, and is lost where it comes back unscattered.
+std::optional<BsdfSample> sample_hazy_mirror(const CoatedConductorBsdf& b, Vec3 wo, float u_lobe,
+                                             Vec2 u) {
+    const Vec3 upper = to_upper_side(wo);
+    const DielectricFresnel f = fresnel_dielectric(upper.z, b.coat.eta);
+    const Rgb mirrored = smooth_reflectance(b, upper);
+    const float scattered = (1 - f.reflectance) * scattered_share(b, f.cos_t);
+    if (!(max_component(mirrored) + scattered > 0)) return {};
+    const float choose_mirror = max_component(mirrored) / (max_component(mirrored) + scattered);
+    if (u_lobe < choose_mirror || !(scattered > 0))
+        return BsdfSample{{-wo.x, -wo.y, wo.z},
+                          mirrored / choose_mirror,
+                          choose_mirror,
+                          LobeKind::specular_reflection};
+    Rng rng = walk_numbers(upper, u_lobe, u);
+    const auto in = enter_coat(b.coat, upper, u);
+    if (!in) return {};
+    const Rgb weight(in->weight / (1 - choose_mirror) / sqr(b.coat.eta));
+    const auto exit = follow_to_exit(layers(b), in->w, weight, rng);
+    if (!exit || !exit->is_scattered) return {};
+    return BsdfSample{wo.z < 0 ? mirror_z(exit->wi) : exit->wi, exit->weight,
+                      pdf(b, upper, exit->wi), LobeKind::diffuse_reflection};
+}
+
 }  // namespace
 
 bool is_specular(const CoatedConductorBsdf& b) {
-    return is_smooth(b) && is_metal_smooth(b);
+    return are_borders_smooth(b) && !b.gap.scatters();
 }
 
 Rgb eval(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
     if (!same_side(wo, wi)) return {};
     wo = to_upper_side(wo);
     wi = to_upper_side(wi);
-    return Rgb(eval_coat(b, wo, wi)) + eval_base(b, wo, wi);
+    const CoatWalkSum base = eval_base(b, wo, wi);
+    return Rgb(eval_coat(b, wo, wi)) + base.straight + base.scattered;
 }
 
 float pdf(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
@@ -213,13 +179,16 @@ float pdf(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
     const float eta = b.coat.eta;
     const DielectricFresnel o = fresnel_dielectric(wo.z, eta), i = fresnel_dielectric(wi.z, eta);
     const float coat =
-        is_smooth(b) ? 0 : coat_ggx(b).reflection_pdf(wo, normalize(wo + wi)) * o.reflectance;
+        is_smooth(b) ? 0 : ggx_of(b.coat).reflection_pdf(wo, normalize(wo + wi)) * o.reflectance;
     if (o.cos_t == 0 || i.cos_t == 0) return coat;
     const Vec3 in_o{wo.x / eta, wo.y / eta, o.cos_t}, in_i{wi.x / eta, wi.y / eta, i.cos_t};
     // Solid angles outside are eta^2 cos_t / cos times as large. A tenth of what enters gets the
-    // density of a cosine, for light that goes to and fro.
+    // density of a cosine, for light that goes to and fro, and so does what the gap scatters.
     const float once = pdf(effective_metal(b), in_o, in_i) * wi.z / (sqr(eta) * i.cos_t);
-    return coat + (1 - o.reflectance) * (0.9f * once + 0.1f * cosine_hemisphere_pdf(wi.z));
+    const float scattered = scattered_share(b, o.cos_t);
+    const float below =
+        0.9f * (1 - scattered) * once + (0.1f + 0.9f * scattered) * cosine_hemisphere_pdf(wi.z);
+    return coat + (1 - o.reflectance) * below;
 }
 
 std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
@@ -228,6 +197,7 @@ std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_
     if (is_specular(b))
         return BsdfSample{
             {-wo.x, -wo.y, wo.z}, smooth_reflectance(b, upper), 1, LobeKind::specular_reflection};
+    if (are_borders_smooth(b)) return sample_hazy_mirror(b, wo, u_lobe, u);
     auto s = sample(b.coat, upper, u_lobe, u);
     if (!s) return {};
     if (!is_transmission(s->lobe)) {
@@ -235,8 +205,14 @@ std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_
         if (below) s->wi = mirror_z(s->wi);
         return s;
     }
-    Rng rng(hash_combine(bits_of(upper), std::bit_cast<uint32_t>(u_lobe),
-                         std::bit_cast<uint32_t>(u.x), std::bit_cast<uint32_t>(u.y)));
+    Rng rng = walk_numbers(upper, u_lobe, u);
+    if (b.gap.scatters()) {
+        const auto exit = follow_to_exit(layers(b), s->wi, s->weight, rng);
+        if (!exit) return {};
+        return BsdfSample{
+            below ? mirror_z(exit->wi) : exit->wi, exit->weight, pdf(b, upper, exit->wi),
+            exit->is_scattered ? LobeKind::diffuse_reflection : LobeKind::glossy_reflection};
+    }
     Vec3 in = s->wi;
     Rgb weight = s->weight * attenuation(b, in);
     for (int bounce = 0; bounce < b.bounces; ++bounce) {
@@ -268,18 +244,29 @@ LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb) {
     wi = to_upper_side(wi);
     // Seen from outside, slopes are eta times as large.
     const ConductorBsdf m = effective_metal(b);
-    LobeShares shares{{LobeShare{LobeKind::glossy_reflection, eval_base(b, wo, wi),
-                                 b.coat.eta * m.alpha_x, b.coat.eta * m.alpha_y}},
-                      1};
+    const CoatWalkSum base = eval_base(b, wo, wi);
+    LobeShares shares;
+    const auto add = [&shares](const LobeShare& lobe) {
+        shares.lobes[static_cast<size_t>(shares.count++)] = lobe;
+    };
+    if (!are_borders_smooth(b))
+        add({LobeKind::glossy_reflection, base.straight, b.coat.eta * m.alpha_x,
+             b.coat.eta * m.alpha_y});
     if (!is_smooth(b))
-        shares.lobes[1] = {LobeKind::glossy_reflection, Rgb(eval_coat(b, wo, wi)), b.coat.alpha_x,
-                           b.coat.alpha_y},
-        shares.count = 2;
+        add({LobeKind::glossy_reflection, Rgb(eval_coat(b, wo, wi)), b.coat.alpha_x,
+             b.coat.alpha_y});
+    if (b.gap.scatters()) add({LobeKind::diffuse_reflection, base.scattered, 0, 0, 1, b.coat.eta});
     return shares;
 }
 
 Rgb albedo(const CoatedConductorBsdf& b, Vec3 wo) {
-    return smooth_reflectance(b, to_upper_side(wo));
+    wo = to_upper_side(wo);
+    const Rgb straight = smooth_reflectance(b, wo);
+    const DielectricFresnel f = fresnel_dielectric(wo.z, b.coat.eta);
+    if (!b.gap.scatters() || f.cos_t == 0) return straight;
+    // About half of what is scattered once goes up, the rest comes back from the metal.
+    const float met = (1 - f.reflectance) * scattered_share(b, f.cos_t);
+    return straight + (0.5f * met) * b.gap.albedo * (Rgb(1) + reflectance(b.metal, 1));
 }
 
 }  // namespace covtrace

@@ -72,6 +72,12 @@ LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value
 bool is_specular(const CoatedConductorBsdf& b);
 Rgb albedo(const CoatedConductorBsdf& b, Vec3 wo);
 
+Rgb eval(const HazyDiffuseBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const HazyDiffuseBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const HazyDiffuseBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const HazyDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+Rgb albedo(const HazyDiffuseBsdf& b, Vec3 wo);
+
 Rgb eval(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi);
 BsdfValue eval_and_pdf(const ThinDielectricBsdf& b, Vec3 wo, Vec3 wi);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "integrator/path_tracer.h"
-#include "shading/phase_function.h"
+#include "bsdf/phase_function.h"
 
 namespace covtrace {
 

@@ -8,7 +8,7 @@
 
 #include "bsdf/fresnel.h"
 #include "integrator/path_tracer.h"
-#include "shading/phase_function.h"
+#include "bsdf/phase_function.h"
 
 namespace covtrace {
 

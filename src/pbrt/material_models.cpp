@@ -51,6 +51,7 @@ struct Builder {
     void metal_edge(ConductorMaterial& m);
     std::optional<ThinFilmDescription> film();
     DielectricMaterial dielectric();
+    TextureId gap_albedo();
     CoatedDiffuseMaterial coated_diffuse();
     CoatedConductorMaterial coated_conductor();
     DiffuseTransmissionMaterial diffuse_transmission();
@@ -161,13 +162,19 @@ DielectricMaterial Builder::dielectric() {
     return m;
 }
 
+/// Texture of what the gap under a coat scatters; none where that is nothing.
+TextureId Builder::gap_albedo() {
+    const TextureId albedo = textures.reflectance_or_none(p, "albedo");
+    return albedo == textures.constant(Rgb{0}, true) ? -1 : albedo;
+}
+
 CoatedDiffuseMaterial Builder::coated_diffuse() {
     CoatedDiffuseMaterial m;
     roughness(m);
     m.reflectance = textures.reflectance(p, "reflectance", Rgb{0.5f});
     m.thickness = textures.grey(p, "thickness", 0.01f);
     m.g = textures.grey(p, "g", 0);
-    m.albedo = textures.reflectance(p, "albedo", Rgb{0});
+    m.albedo = gap_albedo();
     m.eta = constant_index(p, "eta", 1.5f, context);
     m.max_depth = p.integer("maxdepth", 10);
     m.samples = p.integer("nsamples", 1);
@@ -188,7 +195,7 @@ CoatedConductorMaterial Builder::coated_conductor() {
     m.conductor = conductor("conductor.", m.eta);
     m.thickness = textures.grey(p, "thickness", 0.01f);
     m.g = textures.grey(p, "g", 0);
-    m.albedo = textures.reflectance(p, "albedo", Rgb{0});
+    m.albedo = gap_albedo();
     m.max_depth = p.integer("maxdepth", 10);
     m.samples = p.integer("nsamples", 1);
     return m;

@@ -55,10 +55,12 @@ struct CoatedDiffuseMaterial {
     TextureId reflectance = -1;
     TextureId u_roughness = -1, v_roughness = -1;  ///< of the coat
     TextureId thickness = -1;                      ///< of the gap, in optical depths
-    TextureId g = -1, albedo = -1;  ///< of the medium in the gap, which is rendered clear
-    float eta = 1.5f;               ///< of the coat
+    TextureId g = -1, albedo = -1;                 ///< of the medium in the gap
+    float eta = 1.5f;                              ///< of the coat
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
+    /// Whether a medium in the gap scatters, so that light takes a walk.
+    bool scatters_in_gap() const { return !reflects_through_coat && albedo >= 0; }
     /// Whether `reflectance` is the share that leaves of all light that the coat doesn't reflect:
     /// diffuse under specular, as in glTF. Then `thickness`, `g`, `albedo`, `max_depth` and
     /// `samples` don't count.
@@ -101,8 +103,8 @@ struct CoatedConductorMaterial {
     ConductorMaterial conductor;  ///< indices relative to vacuum, as if there were no coat
     TextureId u_roughness = -1, v_roughness = -1;  ///< of the coat
     TextureId thickness = -1;                      ///< of the gap, in optical depths
-    TextureId g = -1, albedo = -1;  ///< of the medium in the gap, which is rendered clear
-    float eta = 1.5f;               ///< of the coat
+    TextureId g = -1, albedo = -1;                 ///< of the medium in the gap
+    float eta = 1.5f;                              ///< of the coat
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
 };

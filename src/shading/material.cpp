@@ -21,15 +21,6 @@ void settle(MaterialColour& c, const TextureStore& textures) {
     c.texture = -1;
 }
 
-void warn_of_gap(TextureId gap_albedo, const char* type, const SourceLocation& where,
-                 const TextureStore& textures, Warnings& warnings) {
-    if (gap_albedo >= 0 &&
-        !(textures.is_constant(gap_albedo) && is_black(textures.eval(gap_albedo, kMiddle))))
-        warnings.push_back({where, std::string(type) +
-                                       ": scattering between coat and base (\"albedo\") is not "
-                                       "supported; the gap is rendered clear"});
-}
-
 /// Random bits that are the same whenever a place is met, and others for each `key`.
 uint64_t hash_of_position(const SurfaceHit& hit, uint64_t key) {
     for (const float c : {hit.position.x, hit.position.y, hit.position.z})
@@ -62,8 +53,7 @@ void MaterialStore::prepare(const CoatedDiffuseMaterial& m, Material& material,
                                                  : &coats_.get(refractive_index(m.eta), thickness);
     if (m.normal_reflectance >= 0 || m.coat_weight >= 0 || m.film || m.multiple_scattering)
         material.tables.white = &coats_.get(kWhiteIndex, 0);
-    warn_of_gap(m.albedo, "coateddiffuse", where, textures, warnings_);
-    if (m.thickness >= 0 && !textures.is_constant(m.thickness))
+    if (!m.scatters_in_gap() && m.thickness >= 0 && !textures.is_constant(m.thickness))
         warnings_.push_back({where,
                              "coateddiffuse: \"thickness\" can't be textured; its value at (u, v) "
                              "= (0.5, 0.5) is used everywhere"});
@@ -76,7 +66,6 @@ void MaterialStore::prepare(const SubsurfaceMaterial& m, Material& material,
 
 void MaterialStore::prepare(const CoatedConductorMaterial& m, Material& material,
                             const TextureStore& textures) {
-    warn_of_gap(m.albedo, "coatedconductor", material.description.where, textures, warnings_);
     prepare(m.conductor, material, textures);
 }
 
@@ -158,8 +147,11 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
         const MaterialValues values{textures, at, material.colours, adaptation_, powers_, lobes};
         found = make_bsdf(material.description, values, material.tables);
     }
+    const auto place = [&hit] { return static_cast<uint32_t>(hash_of_position(hit, 0) >> 32); };
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
-        coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
+        coated->place = place();
+    else if (auto* hazy = std::get_if<HazyDiffuseBsdf>(&found))
+        hazy->place = place();
     else if (auto* hair = std::get_if<HairBsdf>(&found))
         hair->offset = std::clamp(2 * hit.uv.y - 1, -1.0f, 1.0f);
     return found;

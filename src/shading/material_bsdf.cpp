@@ -75,9 +75,36 @@ CoatedDiffuseBsdf total_coat(const CoatedDiffuseMaterial& m, Rgb reflectance, co
     return make_coated_total(*tables.coat, reflectance, alpha.x, alpha.y, tint);
 }
 
+/// Optical depth of the gap of a coated model.
+template <typename Material>
+float gap_thickness(const Material& m, const Values& v) {
+    const float thickness = v.number(m.thickness, kDefaultThickness);
+    return thickness > 0 ? thickness : 0;
+}
+
+/// Medium in the gap of a coated model.
+template <typename Material>
+GapScattering gap_scattering(const Material& m, const Values& v, float thickness) {
+    if (!(thickness > 0)) return {};
+    constexpr float kMostForward = 0.99f;  // beyond it light goes straight on
+    const float g = v.number(m.g, 0);
+    return {share(v.spectrum(m.albedo, 0)),
+            std::isfinite(g) ? std::clamp(g, -kMostForward, kMostForward) : 0.0f,
+            std::max(1, m.max_depth)};
+}
+
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables) {
     if (m.reflects_through_coat) return total_coat(m, v.reflectance(), v, tables);
     const Vec2 alpha = v.alphas(m);
+    if (m.scatters_in_gap()) {
+        HazyDiffuseBsdf b;
+        b.thickness = gap_thickness(m, v);
+        b.gap = gap_scattering(m, v, b.thickness);
+        b.coat = {refractive_index(m.eta), alpha.x, alpha.y};
+        b.base = {v.reflectance()};
+        b.samples = std::max(1, m.samples);
+        return b;
+    }
     // The number of bounces is half of pbrt's depth, whose walk meets the base at every second of
     // its steps.
     return make_coated_diffuse(*tables.coat, v.powers_of_reflectance(), alpha.x, alpha.y,
@@ -135,11 +162,12 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables& table
     b.metal.eta *= 1 / b.coat.eta;
     b.metal.k *= 1 / b.coat.eta;
     if (m.conductor.multiple_scattering) b.metal = with_multiple_scattering(b.metal, *tables.white);
-    b.thickness = std::max(0.0f, v.number(m.thickness, kDefaultThickness));
+    b.thickness = gap_thickness(m, v);
     // The number of bounces is half of pbrt's depth, whose walk meets the metal at every second of
     // its steps.
     b.bounces = std::max(1, (m.max_depth + 1) / 2);
     b.samples = std::max(1, m.samples);
+    b.gap = gap_scattering(m, v, b.thickness);
     return b;
 }
 

@@ -32,6 +32,7 @@ bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
            all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
 }
 bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
+    if (m.scatters_in_gap() && !all_constant(t, {m.thickness, m.g, m.albedo})) return false;
     return is_constant(t, m.film) && all_constant(t, {m.reflectance, m.u_roughness, m.v_roughness,
                                                       m.normal_reflectance, m.coat_weight});
 }
@@ -44,7 +45,7 @@ bool is_constant(const TextureStore& t, const DiffuseTransmissionMaterial& m) {
 }
 bool is_constant(const TextureStore& t, const CoatedConductorMaterial& m) {
     return is_constant(t, m.conductor) &&
-           all_constant(t, {m.u_roughness, m.v_roughness, m.thickness});
+           all_constant(t, {m.u_roughness, m.v_roughness, m.thickness, m.g, m.albedo});
 }
 bool is_constant(const TextureStore& t, const ThinDielectricMaterial& m) {
     return is_constant(t, m.film) &&

@@ -119,6 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"bump-ramp", Where::everywhere, 0.8f * kLit},
                     Known{"normal-map", Where::everywhere, kLit},
                     Known{"furnace-coatedconductor", Where::middle, Rgb(1)},
+                    Known{"furnace-coateddiffuse-gap", Where::everywhere, Rgb(1)},
                     Known{"furnace-dispersion", Where::everywhere, Rgb(1)},
                     Known{"integrator-regularize", Where::everywhere, Rgb(0.489408f), 5e-3},
                     Known{"furnace-mix", Where::middle, Rgb(0.35f)},

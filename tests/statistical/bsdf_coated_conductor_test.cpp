@@ -34,6 +34,7 @@ std::vector<Case> all_cases() {
         const char* name;
         float coat, metal;
         bool multiple_scattering = false;
+        float gap_albedo = 0, g = 0;
     };
     std::vector<Case> cases;
     for (const Roughness& r : {Roughness{"smooth_on_rough", 0, 0.3f},
@@ -41,13 +42,18 @@ std::vector<Case> all_cases() {
                                {"both_rough", 0.3f, 0.5f},
                                {"fine_on_rough", 0.1f, 0.6f},
                                {"smooth_on_bouncing", 0, 0.8f, true},
-                               {"fine_on_bouncing", 0.1f, 0.8f, true}})
+                               {"fine_on_bouncing", 0.1f, 0.8f, true},
+                               {"haze_on_smooth", 0, 0, false, 0.8f, 0.5f},
+                               {"haze_on_rough", 0, 0.3f, false, 0.8f, -0.3f},
+                               {"rough_haze_on_smooth", 0.3f, 0, false, 0.8f, 0},
+                               {"rough_haze_on_rough", 0.3f, 0.5f, false, 0.8f, 0.7f}})
         for (const float cos_o : {0.95f, 0.5f, 0.15f}) {
             CoatedConductorBsdf b;
             b.coat = {1.5f, r.coat, r.coat};
             b.metal = {Rgb(0.13f, 0.6f, 0.73f), Rgb(2.6f, 1.63f, 1.43f), r.metal, r.metal};
             if (r.multiple_scattering) b.metal = with_multiple_scattering(b.metal, white);
-            b.thickness = 0.05f;
+            b.thickness = r.gap_albedo > 0 ? 0.4f : 0.05f;
+            b.gap = {Rgb(r.gap_albedo), r.g, 10};
             cases.push_back(
                 {std::string(r.name) + "_at_" + std::to_string(int(100 * cos_o)), b, cos_o});
         }
@@ -122,6 +128,38 @@ TEST(CoatedConductorLimits, SmoothBordersSumTheSeries) {
         EXPECT_NEAR(s->weight.g, 1, 2e-3f);
         EXPECT_EQ(s->wi, (Vec3{-wo.x, -wo.y, wo.z}));
     }
+}
+
+TEST(CoatedConductorLimits, AGapThatKeepsAllLightLosesNone) {
+    // Over a metal that reflects all light, under a smooth coat. Rough ones lose light by single
+    // scattering whenever light is reflected inside.
+    for (const float g : {-0.5f, 0.7f})
+        for (const float cos_o : {1.0f, 0.4f}) {
+            CoatedConductorBsdf b;
+            b.coat = {1.5f, 0, 0};
+            b.metal = {Rgb(1e-4f), Rgb(1e3f), 0, 0};
+            b.thickness = 0.8f;
+            b.gap = {Rgb(1), g, 500};
+            const Vec3 wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
+            constexpr int kWalks = 40000;
+            Rng rng(8);
+            double mirrored = 0, scattered = 0, evaluated = 0, square = 0;
+            for (int i = 0; i < kWalks; ++i) {
+                const float u_lobe = rng.next_float();
+                const auto s = sample(Bsdf(b), wo, u_lobe, rng.next_2d());
+                if (s) (is_specular(s->lobe) ? mirrored : scattered) += s->weight.g / kWalks;
+            }
+            EXPECT_NEAR(mirrored + scattered, 1, 0.01) << g << " " << cos_o;
+            for (int i = 0; i < kWalks; ++i) {
+                const Vec3 wi = square_to_cosine_hemisphere(rng.next_2d());
+                const double f = eval(Bsdf(b), wo, wi).g / cosine_hemisphere_pdf(wi.z);
+                evaluated += f / kWalks;
+                square += f * f / kWalks;
+            }
+            const double error = std::sqrt((square - evaluated * evaluated) / kWalks);
+            EXPECT_LT(error, 0.02);
+            EXPECT_NEAR(evaluated, 1 - mirrored, 4 * error) << g << " " << cos_o;
+        }
 }
 
 TEST(CoatedConductorLimits, ACoatOfIndexOneIsNoCoat) {

@@ -15,7 +15,7 @@
 #include "core/warp.h"
 #include "light/environment_map.h"
 #include "shading/medium.h"
-#include "shading/phase_function.h"
+#include "bsdf/phase_function.h"
 
 namespace covtrace {
 namespace {

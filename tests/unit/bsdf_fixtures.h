@@ -64,6 +64,18 @@ inline CoatedConductorBsdf coated_metal(float coat_x, float coat_y, float metal_
     return b;
 }
 
+/// A coated metal whose gap scatters, more of it forwards.
+inline CoatedConductorBsdf hazy_metal(float coat, float metal) {
+    CoatedConductorBsdf b = coated_metal(coat, coat, metal, metal);
+    b.thickness = 0.6f;
+    b.gap = {{0.9f, 0.6f, 0}, 0.4f, 10};
+    return b;
+}
+
+inline HazyDiffuseBsdf hazy_diffuse(float coat) {
+    return {{1.5f, coat, coat}, {{0.7f, 0.5f, 0}}, 0.6f, 1, 0, {{0.9f, 0.6f, 0}, 0.4f, 10}};
+}
+
 inline ThinDielectricBsdf filmed_pane(float alpha) {
     ThinDielectricBsdf b{1.5f, Rgb(0.9f), alpha, alpha};
     b.film = {0.9f, 2, 300};

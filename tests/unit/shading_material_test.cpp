@@ -211,20 +211,40 @@ TEST_F(MaterialTest, CoatedDiffuseHonoursDepthAndSharesTables) {
 }
 
 TEST_F(MaterialTest, WhatTheGapCantDoIsWarnedOf) {
-    CoatedDiffuseMaterial clear, foggy, uneven;
-    clear.albedo = constant(0.0f);
+    CoatedDiffuseMaterial uneven, foggy;
+    uneven.thickness = foggy.thickness = checks(constant(0.1f), constant(0.2f));
     foggy.albedo = constant(0.5f);
-    uneven.thickness = checks(constant(0.1f), constant(0.2f));
-    add(clear);
-    add(foggy);
     const MaterialId uneven_id = add(uneven);
-    scene_.materials[1].where.line = 7;
+    add(foggy);
+    scene_.materials[0].where.line = 7;
     build();
-    ASSERT_EQ(materials_->warnings().size(), 2u);
+    ASSERT_EQ(materials_->warnings().size(), 1u);
     EXPECT_EQ(materials_->warnings()[0].where.line, 7);
-    EXPECT_NE(materials_->warnings()[0].text.find("albedo"), std::string::npos);
-    EXPECT_NE(materials_->warnings()[1].text.find("thickness"), std::string::npos);
+    EXPECT_NE(materials_->warnings()[0].text.find("thickness"), std::string::npos);
     EXPECT_EQ(bsdf_at<CoatedDiffuseBsdf>(uneven_id).table->thickness(), 0.1f);
+}
+
+TEST_F(MaterialTest, WhatScattersInTheGapIsThatOfTheTextures) {
+    CoatedDiffuseMaterial paint;
+    CoatedConductorMaterial metal, bare;
+    paint.albedo = metal.albedo = bare.albedo = constant({0.5f, 2, NAN});
+    paint.g = constant(0.3f);
+    metal.g = constant(7);
+    paint.thickness = metal.thickness = constant(0.4f);
+    bare.thickness = constant(-1);
+    paint.max_depth = 20;
+    const MaterialId paint_id = add(paint), metal_id = add(metal), bare_id = add(bare);
+    build();
+    EXPECT_TRUE(materials_->warnings().empty());
+    const auto p = bsdf_at<HazyDiffuseBsdf>(paint_id);
+    EXPECT_EQ(p.gap.albedo, Rgb(0.5f, 1, 0));
+    EXPECT_EQ(p.gap.g, 0.3f);
+    EXPECT_EQ(p.gap.events, 20);
+    EXPECT_EQ(p.thickness, 0.4f);
+    const auto m = bsdf_at<CoatedConductorBsdf>(metal_id);
+    EXPECT_TRUE(m.gap.scatters());
+    EXPECT_EQ(m.gap.g, 0.99f);
+    EXPECT_FALSE(bsdf_at<CoatedConductorBsdf>(bare_id).gap.scatters());
 }
 
 TEST_F(MaterialTest, HairTakesTheFirstDescriptionOfItsPigment) {
