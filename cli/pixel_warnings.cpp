@@ -15,10 +15,11 @@ void warn_of_rejected(const RenderStatistics& statistics) {
     say("\n");
 }
 
-void warn_of_darkness(double dark) {
-    say("warning: {:.0f} % of the surfaces in view are black, as no light reaches them; --light "
-        "camera adds a lamp, --light 'x,y,z' one at a place, and --environment the sky's light\n",
-        100 * dark);
+void warn_of_darkness(double dark, bool has_environment) {
+    say("warning: {:.0f} % of the surfaces in view are black, as no light reaches them{}; --light "
+        "camera adds a lamp, --light 'x,y,z' one at a place{}\n",
+        100 * dark, has_environment ? ", that of --environment neither" : "",
+        has_environment ? "" : ", and --environment the sky's light");
 }
 
 void warn_of_nothing(const std::string& view) {

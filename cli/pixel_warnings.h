@@ -11,7 +11,8 @@ namespace covtrace::cli {
 /// Warns of samples that count as black, and how to look at one.
 void warn_of_rejected(const RenderStatistics& statistics);
 /// Warns where light does not reach most of what an image shows, of which the share `dark` is dark.
-void warn_of_darkness(double dark);
+/// `has_environment`: whether --environment was given, which is no remedy then.
+void warn_of_darkness(double dark, bool has_environment);
 /// Warns of an image that shows nothing. `view`: view_of_all of the scene, where that is not empty.
 void warn_of_nothing(const std::string& view);
 /// Warns of a picture that is `stops` too bright to show half of what has light. `exposure`: by

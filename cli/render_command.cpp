@@ -177,15 +177,17 @@ void require_samples(const RenderResult& result, const Monitor& monitor) {
 
 /// Faults of an image as a picture of its scene.
 struct PictureFaults {
-    double dark = 0;         ///< dark_share
-    std::string other_view;  ///< one that sees the scene, where this one sees nothing
-    int too_bright = 0;      ///< stops_too_bright, of pictures
+    double dark = 0;               ///< dark_share
+    bool has_environment = false;  ///< of the option --environment
+    std::string other_view;        ///< one that sees the scene, where this one sees nothing
+    int too_bright = 0;            ///< stops_too_bright, of pictures
 };
 
 PictureFaults faults_of(const RenderArguments& a, const fs::path& output, const Image& image,
                         SceneDescription& scene) {
     PictureFaults found;
     found.dark = dark_share(image);
+    found.has_environment = !scene.environment_override.empty();
     if (a.film.shard) return found;
     if (shows_nothing(image)) found.other_view = view_of_all(scene);
     if (!a.png.empty() || output.extension() == ".png")
@@ -206,7 +208,8 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
     if (a.quiet) return;
     warn_of_failed_denoiser(result.image);
     const auto is_new = [&told](const char* fault) { return told.insert(fault).second; };
-    if (faults.dark >= kMostlyDark && is_new("dark")) warn_of_darkness(faults.dark);
+    if (faults.dark >= kMostlyDark && is_new("dark"))
+        warn_of_darkness(faults.dark, faults.has_environment);
     if (!faults.other_view.empty() && is_new("nothing")) warn_of_nothing(faults.other_view);
     if (faults.too_bright > 0 && is_new("bright"))
         warn_of_overexposure(faults.too_bright, a.display.exposure);

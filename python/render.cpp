@@ -119,10 +119,13 @@ py::object extent_of(const SceneDescription& scene) {
                           py::make_tuple(box.hi.x, box.hi.y, box.hi.z));
 }
 
-std::string darkness_text(double dark) {
+/// `has_environment`: whether environment= was given, which is no remedy then.
+std::string darkness_text(double dark, bool has_environment) {
     return std::to_string(std::lround(100 * dark)) +
-           " % of the surfaces in view are black, as no light reaches them; light=\"camera\" "
-           "adds a lamp, light=\"x,y,z\" one at a place, and environment= the sky's light";
+           " % of the surfaces in view are black, as no light reaches them" +
+           (has_environment ? ", that of environment= neither" : "") +
+           "; light=\"camera\" adds a lamp, light=\"x,y,z\" one at a place" +
+           (has_environment ? "" : ", and environment= the sky's light");
 }
 
 /// Builds the scene and renders it, without Python.
@@ -171,7 +174,8 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     const std::optional<ReplacedPixels> replaced = replaced_pixels(result.image.metadata);
     if (replaced) warnings.push_back({{}, describe(*replaced)});
     if (const double dark = dark_share(result.image); dark >= kMostlyDark)
-        warnings.push_back({{}, darkness_text(dark)});
+        warnings.push_back(
+            {{}, darkness_text(dark, !scene.description.environment_override.empty())});
     if (!is_shard && shows_nothing(result.image))
         if (const std::string view = view_of_all(scene.description); !view.empty())
             warnings.push_back({{},

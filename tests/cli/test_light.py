@@ -62,6 +62,10 @@ class Light(CliTest):
         for part in ("100 % of the surfaces in view are black", "--light camera", "--light 'x,y,z'", "--environment"):
             self.assertIn(part, warnings[0])
         self.assertEqual(self.render(ROOM, "--quiet").stderr, "")
+        # An environment that is there already is no way out.
+        _, warnings = self.seen("--environment", "0.5")
+        self.assertIn("no light reaches them, that of --environment neither; --light camera", warnings[-1])
+        self.assertNotIn("sky's light", warnings[-1])
         # Night skies, and pictures that are dark in half of what they show, are as they are meant.
         for scene in (ROOM.replace("0 0 0  1 0.3 1", "0 0 9  0 0 99"), ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [.1 .1 .1]')):
             self.assertEqual(self.seen(scene=scene)[1], [])
