@@ -4,6 +4,7 @@ import numpy as np
 
 from . import attributes, export_meshes, mesh_numbers
 from .body import Body, corner_normals, keep_undeformed
+from .node_signature import tree_of
 from .shader_nodes.evaluator import evaluated
 from .shader_nodes.flat import flat_output
 from .shader_nodes.place import BodyPlace
@@ -20,7 +21,7 @@ def method_of(material):
 
 def node_of(material):
     """The node that moves vertices of what a material is on; None where none does."""
-    if not material or not material.use_nodes or not material.node_tree or method_of(material) not in MOVES:
+    if not tree_of(material) or method_of(material) not in MOVES:
         return None
     output = flat_output(material.node_tree)
     link = next(iter(output.inputs["Displacement"].links), None) if output else None

@@ -16,7 +16,7 @@ from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import medium_of
 from .media import Media
-from .node_signature import all_nodes
+from .node_signature import all_nodes, tree_of
 from .owner import Owner, asked_of_owner
 from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS, groups_of_rays
@@ -104,7 +104,7 @@ class MaterialExporter(SumExporter):
         self.name, self.own_holdouts = material.name if material else "none", set()
         if material is WITHOUT_MATERIAL:
             return [Variant(RAYS, self._interface(), medium=self._medium(None))]
-        if material is None or not material.use_nodes or not material.node_tree:
+        if not tree_of(material):
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
         nodes = list(all_nodes(material.node_tree))

@@ -7,6 +7,7 @@ import numpy as np
 
 from .coefficients import Coefficients
 from .media import VaryingMedium
+from .node_signature import tree_of
 from .shader_nodes.blackbody import blackbodies
 from .shader_nodes.evaluator import Evaluator
 from .shader_nodes.flat import flat_output
@@ -156,7 +157,7 @@ def _tell_of_colours(found, tell):
 
 
 def _volume(material):
-    output = flat_output(material.node_tree) if material and material.use_nodes and material.node_tree else None
+    output = flat_output(tree_of(material)) if tree_of(material) else None
     return output and output.inputs["Volume"]
 
 

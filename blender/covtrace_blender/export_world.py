@@ -9,7 +9,7 @@ from . import world_baking
 from .baking import Surface
 from .export_shaders import numbers
 from .export_textures import pixels, write_pfm
-from .node_signature import all_nodes
+from .node_signature import all_nodes, tree_of
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .shader_nodes.evaluator import Evaluator
 from .shader_nodes.flat import flat_socket
@@ -54,7 +54,7 @@ def _groups(world, is_seen):
         return []
     seen = getattr(world, "cycles_visibility", None)  # None where Cycles is not enabled
     rays = [ray for ray in _SKY_RAYS if getattr(seen, "scatter" if ray == "volume" else ray, True) and (is_seen or ray != "camera")]
-    nodes = list(all_nodes(world.node_tree)) if world.use_nodes and world.node_tree else []
+    nodes = list(all_nodes(tree_of(world))) if tree_of(world) else []
     return groups_of_rays(nodes, rays)
 
 
@@ -81,7 +81,7 @@ class Image:
 
 def _light(world, warn, tell, time, is_preview, ray):
     """None, a colour, or an Image: the world as rays of a kind see it."""
-    if not world.use_nodes or not world.node_tree:
+    if not tree_of(world):
         return _visible(tuple(world.color))
     output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
     if output is None or not output.inputs["Surface"].is_linked:

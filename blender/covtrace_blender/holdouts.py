@@ -1,11 +1,12 @@
 """Holdouts: what the camera's rays, straight on, end at as where there is nothing, so that the picture is black and clear there."""
 
+from .node_signature import tree_of
 from .shader_nodes.flat import flat_output
 
 
 def holds_out(material):
     """Whether a material is a Holdout and nothing else."""
-    output = flat_output(material.node_tree) if material and material.use_nodes and material.node_tree else None
+    output = flat_output(tree_of(material)) if tree_of(material) else None
     socket = output and output.inputs["Surface"]
     return bool(socket and socket.is_linked and socket.links[0].from_node.type == "HOLDOUT")
 

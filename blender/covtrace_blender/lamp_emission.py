@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
+from .node_signature import tree_of
 from .photometry import SIZE, Damaged, directions_of_rows
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .shader_nodes.evaluator import Evaluator
@@ -38,7 +39,7 @@ class LampEmission:
         """The lights whose sum it is: [(the colour by which the nodes multiply the lamp's power, an image (h, w) over directions that
         multiplies it, (h, w, 3) over the UV map of area lamps, or None)]."""
         lamp = self.lamp
-        if not lamp.use_nodes or not lamp.node_tree:
+        if not tree_of(lamp):
             return [((1, 1, 1), None)]
         output = lamp.node_tree.get_output_node("CYCLES")
         light = self._emitted(output.inputs["Surface"]) if output else np.zeros(3)

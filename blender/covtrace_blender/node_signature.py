@@ -13,6 +13,12 @@ def all_nodes(tree):
             yield from all_nodes(node.node_tree)
 
 
+def tree_of(thing):
+    """The tree of nodes of a material, a world or a lamp; None of what has none, or does not use it, and of None."""
+    # Blender 6 is to have no use_nodes where nodes are always used
+    return thing.node_tree if thing and getattr(thing, "use_nodes", True) else None
+
+
 def hangs_on_world(tree):
     """Whether nodes ask for places in the world, not on the object alone."""
     return any(node.type in ("NEW_GEOMETRY", "CAMERA", "WIREFRAME") or node.type == "TEX_COORD" and node.object for node in all_nodes(tree))

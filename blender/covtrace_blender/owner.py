@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 
-from .node_signature import all_nodes
+from .node_signature import all_nodes, tree_of
 from .shader_nodes.coordinates import IS_STRAND
 from .shader_nodes.hashing import hashed
 
@@ -74,7 +74,7 @@ def asked_of_owner(nodes):
 
 def asks_for_random(material):
     """Whether a material's nodes ask for the random number of what it is on."""
-    tree = material.node_tree if material and material.use_nodes else None
+    tree = tree_of(material)
     return tree is not None and "Random" in asked_of_owner(all_nodes(tree))
 
 

@@ -5,6 +5,7 @@ import numpy as np
 from .coefficients import Coefficients
 from .export_shaders import numbers
 from .export_volumes import medium_of
+from .node_signature import tree_of
 from .shader_nodes.flat import flat_output
 from .shader_nodes.unsupported import Unsupported
 from .solid import Box
@@ -17,7 +18,7 @@ DEPTH = 8
 
 def world_volume(world, pixels_of, warn):
     """The Coefficients of a world, or None. pixels_of: as places of nodes have it; warn(text): what is left out."""
-    output = flat_output(world.node_tree) if world and world.use_nodes and world.node_tree else None
+    output = flat_output(tree_of(world)) if tree_of(world) else None
     node = next((link.from_node for link in output.inputs["Volume"].links), None) if output else None
     if node is None:
         return None

@@ -10,7 +10,7 @@ namespace covtrace {
 
 bool open_walls(SceneDescription& scene, const Geometry& geometry, const TextureStore& textures) {
     // Media without a wall around them would keep all light off a camera within
-    if (!scene.has_stand_in_lights || scene.camera.medium >= 0) return false;
+    if (!scene.is_lit_from_outside || scene.camera.medium >= 0) return false;
     const ViewProbe probe(scene, geometry, textures);
     if (!probe.is_dark()) return false;
     const std::vector<bool> walls = probe.outer_walls();
@@ -24,12 +24,11 @@ bool open_walls(SceneDescription& scene, const Geometry& geometry, const Texture
     for (ObjectDescription& object : scene.objects) open(object.shapes);
     scene.warnings.push_back(
         {{},
-         "walls keep the sky and the key light from most of what is seen; the outermost (" +
+         "walls keep the light from outside from most of what is seen; the outermost (" +
              std::to_string(std::count(walls.begin(), walls.end(), true)) + " of " +
              std::to_string(walls.size()) +
-             " shapes) let that light in, as in viewers, and throw no shadows; a lamp at the "
-             "camera "
-             "takes its place by the option light: \"camera\""});
+             " shapes) let it in, as in viewers, and throw no shadows; a lamp at the camera takes "
+             "its place by the option light: \"camera\""});
     return true;
 }
 

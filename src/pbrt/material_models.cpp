@@ -35,13 +35,12 @@ struct Builder {
             const TextureId both = textures.roughness(p, prefix + "roughness", otherwise);
             if (m.u_roughness < 0) m.u_roughness = both;
             if (m.v_roughness < 0) m.v_roughness = both;
+        } else {
+            // Beside both of its parts it is superfluous, which is no reason for a warning
+            p.ignore({prefix + "roughness"});
         }
         m.remap_roughness = p.flag("remaproughness", true);
     }
-
-    /// Marks the shared roughness as known: a single "roughness" beside both of its parts is
-    /// superfluous, which is no reason for a warning.
-    void ignore_shared() { p.ignore({"roughness", "conductor.roughness", "interface.roughness"}); }
 
     DiffuseMaterial diffuse() { return {textures.reflectance(p, "reflectance", Rgb{0.5f})}; }
     /// A metal's model. `outside`: index of the material that covers the metal; the colours of eta
@@ -387,7 +386,6 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
                                   "diffusetransmission", "coatedconductor", "thindielectric",
                                   "subsurface", "hair", "measured", "mix", "interface"});
     }
-    b.ignore_shared();
     b.p.warn_unused(context.log, "material " + in_quotes(type));
     return model;
 }

@@ -30,7 +30,7 @@ void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
     key.direction = normalize(camera_to_world.vector(normalize(Vec3{-0.5f, 0.7f, -0.6f})));
     key.angle = kKeyAngle;
     scene.lights.push_back({key, {}, where});
-    scene.has_stand_in_lights = true;
+    scene.is_lit_from_outside = true;
     // The power follows from the view, and would change from frame to frame. In a medium the light
     // beside a lamp at the eye has no bound
     if (!scene.swept.empty() || scene.camera.medium >= 0) return;

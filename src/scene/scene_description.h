@@ -254,7 +254,9 @@ struct SceneDescription {
     /// Warnings of a file that has no camera, or no light: `complete` gives them out with its
     /// defaults. Empty where the file has one, or where another one took the place.
     std::optional<Warning> no_camera, no_lights;
-    bool has_stand_in_lights = false;  ///< whether `complete` gave it lights
+    /// Whether its file has no light, and all light is from outside: that of stand-ins
+    /// (`complete`), or an environment that took their place.
+    bool is_lit_from_outside = false;
     /// Bounds of the shapes at some moments of a whole animation, in world space, where the scene
     /// is a frame of one: a camera and lights that the file lacks are placed by them, and stand
     /// still. Else empty.

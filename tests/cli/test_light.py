@@ -185,7 +185,7 @@ class Light(CliTest):
     def test_walls_let_in_the_light_that_stands_in(self):
         dark = ROOM.replace('LightSource "infinite"\n', "")
         image, warnings = self.seen("--spp", "256", scene=dark)
-        self.assertRegex(warnings[-1], "walls keep the sky and the key light from most of what is seen; the outermost \\(1 of 1 shapes\\)")
+        self.assertRegex(warnings[-1], "walls keep the light from outside from most of what is seen; the outermost \\(1 of 1 shapes\\)")
         # The wall before the camera is as bright as a piece of it that stands alone.
         alone = 'CoordSysTransform "camera"\nTranslate 0 0 3\nShape "disk"\n'
 
@@ -205,6 +205,16 @@ class Light(CliTest):
         through, warnings = self.seen("--spp", "256", "--max-depth", "2", scene=dark + pane)
         self.assertIn("the outermost (1 of 2 shapes)", warnings[-1])
         self.assertAlmostEqual(middle(through) / middle(image), 0.96, delta=0.04)
+        # An environment comes in as the light does whose place it takes; a lamp needs none of it, nor a file that has a light.
+        image, warnings = self.seen("--spp", "64", "--environment", "0.8", scene=dark)
+        self.assertIn("the outermost (1 of 1 shapes)", warnings[-1])
+        for value in image["G"]:
+            self.assertAlmostEqual(value, 0.8 * REFLECTANCE, delta=0.02)
+        for arguments, scene in ((("--environment", "0.8", "--light", "camera power 0.001"), dark), (("--environment", "0.8"), ROOM),
+                                 (("--environment", "0"), dark)):
+            image, warnings = self.seen(*arguments, scene=scene)
+            self.assertLess(max(image["G"]), 0.01)
+            self.assertNotIn("outermost", "".join(warnings))
         # Outside, and where half of the room is open, the light that stands in is enough.
         for open_scene in (dark.replace("0 0 0  1 0.3 1", "0 0 9  0 0 0"), dark.replace('"float radius" 3', '"float radius" 3 "float zmax" 0')):
             _, warnings = self.seen(scene=open_scene)
@@ -233,7 +243,7 @@ class Light(CliTest):
         result = self.run_program("render", "room.gltf", "-o", "out.exr", "--resolution", "24x24", "--spp", "4", "--progress", "none",
                                   "--frames", "0-1")
         self.assertEqual(result.code, DONE, result)
-        self.assertIn("the outermost (1 of 1 shapes) let that light in", result.stderr)
+        self.assertIn("the outermost (1 of 1 shapes) let it in", result.stderr)
         for frame in (0, 1):
             self.assertGreater(self.mean(exr.read(self.folder / f"out.000{frame}.exr").pixels["G"]), 0.1)
 

@@ -291,6 +291,16 @@ TEST(SceneMaterials, RoughnessesAreAtLeastZero) {
                   "");
 }
 
+TEST(SceneMaterials, RoughnessOfSmoothMaterialsIsTold) {
+    for (const char* type : {"thindielectric", "diffuse"}) {
+        const auto made = material_of("\"" + std::string(type) + "\" \"float roughness\" .5");
+        EXPECT_TRUE(contains(warnings_of(made.scene), "\"roughness\"")) << type;
+    }
+    const auto both = material_of(
+        "\"conductor\" \"float uroughness\" .1 \"float vroughness\" .2 \"float roughness\" .5");
+    EXPECT_EQ(warnings_of(both.scene), "");
+}
+
 TEST(SceneMaterials, WhiteOfOtherColourSpacesIsNoWarning) {
     for (const char* space : {"aces2065-1", "rec2020", "dci-p3"}) {
         const std::string text = "ColorSpace \"" + std::string(space) +
