@@ -142,7 +142,8 @@ class ObjectInfoTest(BlenderTest):
         self.export()
         self.assertEqual(self.warnings, [])
         self.assertGreater(theirs.std(), 0.02)
-        np.testing.assert_allclose(ours, theirs, atol=0.005)  # a step of 8 bits
+        # A step of 8 bits; the same cells are up to 0.007 darker in Cycles 3.4 than in 4.5
+        np.testing.assert_allclose(ours, theirs, atol=0.005 if bpy.app.version >= (4, 0) else 0.01)
 
     def test_instances_differ_at_random(self):
         thing = self.plane(self.shining("Random", "Random", "Random"))
