@@ -103,7 +103,8 @@ EnvironmentOverride environment_override(const py::dict& o) {
     const auto image = value_of<std::filesystem::path>(o, "environment", "an image's path");
     std::error_code ignored;
     require(std::filesystem::is_regular_file(image, ignored),
-            "environment is '" + image.string() + "'; expected an image's file that is there, a number or (r, g, b)");
+            "environment is '" + image.string() +
+                "'; expected an image's file that is there, a number or (r, g, b)");
     return {image, Rgb(1)};
 }
 

@@ -24,8 +24,9 @@ struct SensorMatrices {
 /// standard observer sees them under D65. Here the image has colours in place of spectra, so a
 /// matrix takes the place of the curves, too. It is fitted to the spectra that colours come from:
 /// the patches, and the smooth ones of colour/sigmoid_spectrum.h, each under D65 and under the
-/// light of the balance, and to black bodies. Both lights themselves are within 1 % of pbrt's. How far single colours
-/// are from the spectral result is in docs/decisions/0100-sensors-as-matrices.md.
+/// light of the balance, and to black bodies. Both lights themselves are within 1 % of pbrt's. How
+/// far single colours are from the spectral result is in
+/// docs/decisions/0100-sensors-as-matrices.md.
 SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin);
 
 }  // namespace covtrace

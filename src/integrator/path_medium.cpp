@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrator/path_tracer.h"
 #include "bsdf/phase_function.h"
+#include "integrator/path_tracer.h"
 
 namespace covtrace {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "bsdf/fresnel.h"
-#include "integrator/path_tracer.h"
 #include "bsdf/phase_function.h"
+#include "integrator/path_tracer.h"
 
 namespace covtrace {
 

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "bsdf/phase_function.h"
 #include "camera/pixel_filter.h"
 #include "chi_square.h"
 #include "core/rng.h"
 #include "core/warp.h"
 #include "light/environment_map.h"
 #include "shading/medium.h"
-#include "bsdf/phase_function.h"
 
 namespace covtrace {
 namespace {
