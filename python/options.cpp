@@ -11,15 +11,14 @@ namespace covtrace::python {
 
 RenderOptions render_options(const py::dict& o) {
     RenderOptions r;
-    const auto text = [&](const char* name) { return value_of<std::string>(o, name, "a text"); };
-    r.method = choice<Method>("method", text("method"));
-    r.density = choice<DensityRule>("density", text("density"));
-    r.occlusion = choice<Occlusion>("occlusion", text("occlusion"));
+    r.method = choice<Method>(o, "method");
+    r.density = choice<DensityRule>(o, "density");
+    r.occlusion = choice<Occlusion>(o, "occlusion");
     r.denoiser_quality = denoiser_quality(o);
-    r.guides = choice<Guides>("guides", text("guides"));
-    r.brdf_covariance = choice<BrdfCovariance>("brdf_covariance", text("brdf_covariance"));
-    r.texture_bandwidth = choice<TextureBandwidth>("texture_bandwidth", text("texture_bandwidth"));
-    r.filter = choice<FilterRule>("filter", text("filter"));
+    r.guides = choice<Guides>(o, "guides");
+    r.brdf_covariance = choice<BrdfCovariance>(o, "brdf_covariance");
+    r.texture_bandwidth = choice<TextureBandwidth>(o, "texture_bandwidth");
+    r.filter = choice<FilterRule>(o, "filter");
     r.spp = positive<double>(o, "spp");
     r.seconds = positive<double>(o, "time");
     r.error = positive<double>(o, "error");
@@ -38,21 +37,18 @@ RenderOptions render_options(const py::dict& o) {
 
 std::optional<Preset> preset(const py::dict& o) {
     if (!is_given(o, "preset")) return std::nullopt;
-    return choice<Preset>("preset", value_of<std::string>(o, "preset", "a text"));
+    return choice<Preset>(o, "preset");
 }
 
 std::optional<DenoiserQuality> denoiser_quality(const py::dict& o) {
     if (!is_given(o, "denoiser_quality")) return std::nullopt;
-    return choice<DenoiserQuality>("denoiser_quality",
-                                   value_of<std::string>(o, "denoiser_quality", "a text"));
+    return choice<DenoiserQuality>(o, "denoiser_quality");
 }
 
 DenoiserSearch denoiser_search(const py::dict& o) {
     namespace fs = std::filesystem;
     DenoiserSearch search;
-    if (is_given(o, "denoiser"))
-        search.choice =
-            choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"));
+    if (is_given(o, "denoiser")) search.choice = choice<DenoiserChoice>(o, "denoiser");
     if (is_given(o, "denoiser_library"))
         search.library = value_of<fs::path>(o, "denoiser_library", "a file's path");
     Dl_info module{};

@@ -20,14 +20,6 @@ namespace covtrace::python {
 
 namespace py = pybind11;
 
-/// The value that a text stands for. Throws Error(usage) that lists all values.
-template <NamedEnum Enum>
-Enum choice(const char* option, const std::string& text) {
-    if (const auto value = value_named<Enum>(text)) return *value;
-    throw Error(ErrorKind::usage, std::string(option) + " is '" + text + "'; expected one of " +
-                                      listed_names<Enum>(", ", "'"));
-}
-
 inline void require(bool holds, const std::string& message) {
     if (!holds) throw Error(ErrorKind::usage, message);
 }
@@ -43,6 +35,15 @@ T value_of(const py::dict& options, const char* name, const char* expected) {
                                           py::repr(value).cast<std::string>() + "; expected " +
                                           expected);
     }
+}
+
+/// The value that the text options[name] stands for. Throws Error(usage) that lists all values.
+template <NamedEnum Enum>
+Enum choice(const py::dict& options, const char* name) {
+    const std::string expected = "one of " + listed_names<Enum>(", ", "'");
+    const auto text = value_of<std::string>(options, name, expected.c_str());
+    if (const auto value = value_named<Enum>(text)) return *value;
+    throw Error(ErrorKind::usage, std::string(name) + " is '" + text + "'; expected " + expected);
 }
 
 inline bool is_given(const py::dict& options, const char* name) {

@@ -271,8 +271,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const SceneOverrides overrides = scene_overrides(o);
     const int threads = thread_count(o);
     std::optional<InstructionSet> isa;
-    if (is_given(o, "isa"))
-        isa = choice<InstructionSet>("isa", value_of<std::string>(o, "isa", "a text"));
+    if (is_given(o, "isa")) isa = choice<InstructionSet>(o, "isa");
     const size_t texture_bytes =
         is_given(o, "texture_memory")
             ? value_of<size_t>(o, "texture_memory", "a number of bytes, or a text such as '500M'")

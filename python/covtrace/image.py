@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _covtrace
 from .arguments import linear_of, path_of, refuse, text_of
+from .closed import Hinting
 from .scene_warnings import warn
 
 Array = NDArray[numpy.float32]
@@ -97,7 +98,10 @@ class _Metadata(dict[str, Any]):
         return dict, (dict(self),)
 
 
-class Image:
+_WRITE = "write('picture.png') and write('image.exr') write it"
+
+
+class Image(Hinting):
     """A rendered or loaded image.
 
     Layers and channels are float32 views of the image's own memory: no copy is made, writing into
@@ -113,6 +117,11 @@ class Image:
     complete: False where the render was stopped before its end.
     statistics: counters, seconds per phase, memory; empty for images that were read.
     """
+
+    _other_names = {**dict.fromkeys(("save", "savefig", "to_file", "export", "write_png", "write_exr"), _WRITE),
+                    **dict.fromkeys(("show", "plot", "display"), f"a notebook shows it where it is the last line of a cell; {_WRITE}"),
+                    **dict.fromkeys(("pixels", "data", "array", "numpy"), "rgb is its array, and layers and channels have the rest"),
+                    **dict.fromkeys(("stats", "time"), "statistics tells of the render")}
 
     layers: Mapping[str, Array]
     channels: Mapping[str, Array]
@@ -242,6 +251,24 @@ class Image:
     def size(self) -> tuple[int, int]:
         """(width, height) of the stored pixels."""
         return self._planes.size
+
+    @property
+    def width(self) -> int:
+        return self.size[0]
+
+    @property
+    def height(self) -> int:
+        return self.size[1]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """That of `rgb`: (height, width, 3)."""
+        return self.height, self.width, 3
+
+    def _meant_by(self, name: str) -> str:
+        if name in self.__dict__.get("layers", ()):
+            return f"its layers are items, such as [{name!r}]"
+        return super()._meant_by(name)
 
     @property
     def data_window(self) -> tuple[int, int, int, int]:

@@ -16,7 +16,8 @@ from . import _covtrace
 from .arguments import choice_of, path_of, paths_of, shutter_of, text_of
 from .builder import SceneBuilder
 from .builder_calls import name_errors
-from .scene_parts import AreaLight, Camera, Closed, Instance, Light, Material, Parts, Shape
+from .closed import Closed
+from .scene_parts import AreaLight, Camera, Instance, Light, Material, Parts, Shape
 from .scene_warnings import warn
 
 
@@ -35,6 +36,10 @@ class _OwnFolder:
         weakref.finalize(self, shutil.rmtree, self.path, True)
 
 
+_LIGHT = "render(scene, light=...) adds lamps, environment=... lights it from all around"
+_ADD = "a SceneBuilder makes scenes; what a file has can be changed"
+
+
 class Scene(Closed):
     """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
@@ -46,6 +51,14 @@ class Scene(Closed):
     Camera, materials, lights and places of shapes can be changed, and the scene rendered again
     without reading its files: `scene.materials["floor"]["reflectance"] = (0.2, 0.3, 0.1)`.
     """
+
+    _other_names = {**dict.fromkeys(("add_light", "add_lamp", "environment", "background", "world", "envmap"), _LIGHT),
+                    **dict.fromkeys(("add", "add_shape", "add_mesh", "add_material", "add_object"), _ADD),
+                    **dict.fromkeys(("objects", "meshes", "nodes"), "there are shapes, instances and materials"),
+                    **dict.fromkeys(("width", "height", "size"), "resolution is (width, height)"),
+                    **dict.fromkeys(("bounds", "bbox", "bounding_box"), "extent has two corners of the box around all shapes"),
+                    "cameras": "Scene(file, camera=...) chooses one of a glTF file's, by its name or number",
+                    "render": "covtrace.render(scene) renders it"}
 
     _named: Callable[[str], str]  # puts names into messages, for scenes of a SceneBuilder
     _files: _OwnFolder | None = None  # where a SceneBuilder's textures are, which each render reads

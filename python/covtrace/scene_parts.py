@@ -9,22 +9,10 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _covtrace
+from .closed import Closed
 from .errors import UsageError
 
 Matrix = NDArray[numpy.float64]
-
-
-class Closed:
-    """Refuses attributes that its class has not: what is set as one would be lost without a word.
-    `_items` names an item in the message, for classes whose values are items."""
-
-    _items: str | None = None
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_") and not hasattr(type(self), name):
-            elsewhere = f"; its values are items, such as [{self._items!r}]" if self._items else ""
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r} to set{elsewhere}")
-        super().__setattr__(name, value)
 
 
 class Part(Closed):
@@ -58,6 +46,11 @@ class Part(Closed):
 
     def __setitem__(self, name: str, value: ArrayLike) -> None:
         self._description.set_value(self._kind, self._index, name, value)
+
+    def _meant_by(self, name: str) -> str:
+        if not name.startswith("_") and name in self._values():
+            return f"its values are items, such as [{name!r}]"
+        return super()._meant_by(name)
 
     def __repr__(self) -> str:
         return f"<{self._title()} {self._values()}>"
@@ -98,6 +91,9 @@ class Camera(Part, Placed):
     _kind = "camera"
     _elsewhere = "; look_at(eye, target) places it"
     _items = "fov"
+    _other_names = {**dict.fromkeys(("eye", "position", "origin", "location"),
+                                    "look_at(eye, target) places it, and to_world[:3, 3] is where it stands"),
+                    **dict.fromkeys(("target", "direction", "up", "rotation"), "look_at(eye, target, up) places it")}
 
     def look_at(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> None:
         """Places it at `eye`. `UsageError` where `target` is the same point, or straight above or

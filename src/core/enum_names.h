@@ -7,6 +7,7 @@
 ///         enum_names<Shape>({{Shape::round, "round"}, {Shape::flat, "flat"}});
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -43,11 +44,18 @@ constexpr std::string_view name_of(Enum value) {
     return {};
 }
 
+/// Whether two texts are the same but for capital letters of ASCII: people write "AgX".
+constexpr bool is_same_name(std::string_view a, std::string_view b) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [small](char x, char y) { return small(x) == small(y); });
+}
+
 /// The value of a name; none where the table does not have it.
 template <NamedEnum Enum>
 constexpr std::optional<Enum> value_named(std::string_view text) {
     for (const auto& [value, name] : kEnumNames<Enum>)
-        if (name == text) return value;
+        if (is_same_name(name, text)) return value;
     return std::nullopt;
 }
 

@@ -274,11 +274,18 @@ SceneDescription read(Document document, const ReadOptions& options, WarningLog&
     std::vector<std::vector<LightDescription>> judged{scene.lights};
     if (swept) judged = std::move(swept->lights);
     scale_lights(document, bounds, judged, scene, log);
+    const std::string stand_ins =
+        "a grey sky and a key light from the upper left of the camera light it";
     if (!assembler.has_lamps() && !(swept && swept->has_lamps))
         scene.no_lights = {document.place(""),
                            "the scene has no lights (KHR_lights_punctual, or an emissive strength "
-                           "above 1); a grey sky and a key light from the upper left of the camera "
-                           "light it"};
+                           "above 1); " +
+                               stand_ins};
+    else if (scene.lights.empty() && !swept)
+        scene.glow_alone = {document.place(""),
+                            "the scene's only lights are surfaces that glow, which leave most of "
+                            "what is seen dark; " +
+                                stand_ins + ", too"};
     scene.warnings = log.take();
     scene.content_hash = document.content_hash;
     scene.files = {document.files.begin(), document.files.end()};

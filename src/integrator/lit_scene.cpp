@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "integrator/displacement.h"
+#include "integrator/glow_alone.h"
 #include "integrator/lamps.h"
 #include "integrator/open_walls.h"
 
@@ -100,6 +101,7 @@ const SceneDescription& LitScene::lit_description(const std::string& isa) {
         return textures.eval_float(id, {uv, position, {}, {}, vertices});
     };
     geometry.set_alpha(alpha);
+    light_glow_alone(description, geometry, textures);
     has_open_walls = open_walls(description, geometry, textures);
     if (has_open_walls) {
         geometry = Geometry(description, isa);

@@ -5,8 +5,11 @@
 #include <variant>
 
 #include "core/frame.h"
+#include "core/sampler.h"
 #include "core/warp.h"
+#include "image/color_encoding.h"
 #include "integrator/visibility.h"
+#include "light/lights.h"
 #include "scene/imaging_scale.h"
 
 namespace covtrace {
@@ -19,6 +22,8 @@ constexpr float kLeastReached = 0.5f;
 constexpr int kSkyRays = 8;  // per place that is seen
 /// Value in the image of what glows as the sky does: that below the horizon (scene/defaults.cpp).
 constexpr float kGlow = 0.1f;
+constexpr uint32_t kPaths = 32;       // per place that is seen, which look for lamps
+constexpr int kMostMet = 8;           // surfaces that such a path meets
 constexpr float kLeastPassed = 0.5f;  // share of light that what is no wall to it lets through
 
 /// Whether light passes surfaces of a material: borders of media, and what is seen but throws no
@@ -113,6 +118,7 @@ bool ViewProbe::meet(Ray ray, SurfaceHit& hit) const {
     for (int i = 0; i < kMostPassed; ++i) {
         if (!geometry_.intersect(ray, hit)) return false;
         if (keeps_light(hit)) return true;
+        ray.t_max -= hit.t;
         ray.origin = Geometry::offset_origin(hit, ray.direction);
     }
     return false;
@@ -169,6 +175,58 @@ bool ViewProbe::is_dark(const std::vector<bool>& open) const {
                    is_reached(hit, view, [&](Vec3 w) { return finds_light(hit, w, open); });
     });
     return seen > 0 && float(reached) < kLeastReached * float(seen);
+}
+
+/// The value in the image of a white surface that is seen along `view` where one path finds light:
+/// by a lamp at each of the surfaces that it meets, all of which count as white.
+float ViewProbe::light_at(const SurfaceHit& seen, Vec3 view, const Lights& lights,
+                          Sampler& sampler) const {
+    float sum = 0;
+    SurfaceHit hit = seen;
+    Vec3 direction = view;
+    for (int i = 0; i < std::min(scene_.max_depth, kMostMet); ++i) {
+        const Vec3 normal = face_forward(hit.ng, -direction);
+        const float u_light = sampler.next_1d();
+        const auto light =
+            lights.sample(hit.position, normal, hit.time, u_light, sampler.next_2d());
+        const float cosine = light ? dot(normal, light->wi) : 0;
+        if (cosine > 0 && light->pdf > 0) {
+            const Vec3 origin = Geometry::offset_origin(hit, light->wi);
+            Ray shadow{origin, light->wi, hit.time};
+            shadow.kind = RayKind::shadow;
+            constexpr float kBefore = 0.999f;  // the lamp itself is no wall
+            if (light->distance < kInfinity)
+                shadow.t_max = kBefore * length(light->position - origin);
+            SurfaceHit met;
+            if (!meet(shadow, met)) sum += luminance(light->radiance) * cosine / (light->pdf * kPi);
+        }
+        direction = Frame::from_z(normal).to_world(square_to_cosine_hemisphere(sampler.next_2d()));
+        Ray ray{Geometry::offset_origin(hit, direction), direction, hit.time};
+        ray.kind = RayKind::diffuse;
+        if (!meet(ray, hit)) break;
+    }
+    return sum * imaging_scale(scene_);
+}
+
+/// Whether lamps reach a hit that is seen along `view`. `place`: its number among those of the
+/// view.
+bool ViewProbe::is_lit(const SurfaceHit& hit, Vec3 view, const Lights& lights, int place) const {
+    const float least = float(kPaths) * srgb_decode(1.0f / 255);
+    float sum = 0;
+    for (uint32_t path = 0; path < kPaths && sum < least; ++path) {
+        Sampler sampler(0, place % kSide, place / kSide, path);
+        const float value = light_at(hit, view, lights, sampler);
+        if (std::isfinite(value)) sum += value;
+    }
+    return sum >= least;
+}
+
+bool ViewProbe::is_dark(const Lights& lights) const {
+    int seen = 0, lit = 0;
+    for_all_seen([&](const SurfaceHit& hit, Vec3 view) {
+        lit += glows(hit, -view) || is_lit(hit, view, lights, seen++);
+    });
+    return seen > 0 && float(lit) < kLeastReached * float(seen);
 }
 
 std::vector<bool> ViewProbe::outer_walls() const {

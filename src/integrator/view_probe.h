@@ -10,6 +10,9 @@
 
 namespace covtrace {
 
+class Lights;
+class Sampler;
+
 /// Follows rays through a scene before its lights are built. The scene, its geometry, of which
 /// alpha is to be set, and its textures must outlive it. Deterministic.
 class ViewProbe {
@@ -22,14 +25,17 @@ class ViewProbe {
     /// Follows a ray past surfaces that it does not see: backs, borders of media and what throws no
     /// shadow. `passed`: the place of the last back. False where it meets nothing.
     bool follow(Ray ray, SurfaceHit& hit, Vec3* passed = nullptr) const;
-    /// Finds the nearest surface that keeps light: glass, cloth and what else lets at least half of
-    /// it pass does not.
+    /// Finds the nearest surface up to `t_max` that keeps light: glass, cloth and what else lets at
+    /// least half of it pass does not.
     bool meet(Ray ray, SurfaceHit& hit) const;
 
     /// Whether less than half of what is seen glows or is reached by light from outside, that of
     /// distant lights and the sky. As much makes the program tell of a dark image
     /// (image/darkness.h). `open`: shapes, by their place in Geometry::shapes, that let light pass.
     bool is_dark(const std::vector<bool>& open = {}) const;
+    /// Whether less than half of what is seen glows or gets light of `lights`, straight or by way
+    /// of others, that makes a white surface as bright as the first of 255 steps above black.
+    bool is_dark(const Lights& lights) const;
     /// The shapes, by their place in Geometry::shapes, that are the last on most ways to the light
     /// outside on which they lie, from what is seen. Shapes that emit, and borders of media, are
     /// none of them.
@@ -48,6 +54,8 @@ class ViewProbe {
     bool is_passed(MaterialId id, const SurfaceHit& at) const;
     bool keeps_light(const SurfaceHit& hit) const;
     bool finds_light(const SurfaceHit& hit, Vec3 direction, const std::vector<bool>& open) const;
+    float light_at(const SurfaceHit& hit, Vec3 view, const Lights& lights, Sampler& sampler) const;
+    bool is_lit(const SurfaceHit& hit, Vec3 view, const Lights& lights, int place) const;
     template <typename Finds>
     bool is_reached(const SurfaceHit& hit, Vec3 view, const Finds& finds) const;
     template <typename Visit>

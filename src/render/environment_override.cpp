@@ -51,6 +51,7 @@ void replace_environment(const EnvironmentOverride& environment, SceneDescriptio
     std::erase_if(scene.lights, [](LightDescription& light) { return infinite(light) != nullptr; });
     const bool has_no_light = scene.no_lights.has_value();
     scene.no_lights.reset();
+    scene.glow_alone.reset();
     if (!environment.image && is_black(environment.radiance)) return;
     scene.is_lit_from_outside = has_no_light;
     InfiniteLight light;

@@ -53,6 +53,7 @@ std::string lamp_text(const LampDescription& lamp) {
 void add_lamps(const std::vector<LampDescription>& lamps, SceneDescription& scene) {
     if (lamps.empty()) return;
     scene.no_lights.reset();
+    scene.glow_alone.reset();
     std::string text;
     for (LampDescription lamp : lamps) {
         if (!text.empty()) text += " and ";

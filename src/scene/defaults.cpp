@@ -17,6 +17,8 @@ constexpr HeightGradient kGradient{0.25f, 1.3f, 0.85f};
 /// Degrees across the key light: mirrors show it, and the borders of shadows are soft.
 constexpr float kKeyAngle = 10;
 
+}  // namespace
+
 void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
     const float scale = imaging_scale(scene);
     const float white = scale > 0 ? 1 / scale : 1;
@@ -38,8 +40,6 @@ void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
     lamp.is_for_the_dark = true;
     scene.lamps.push_back(lamp);
 }
-
-}  // namespace
 
 void complete(SceneDescription& scene) {
     if (scene.shapes.empty() && scene.instances.empty() && scene.camera.medium < 0)

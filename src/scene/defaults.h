@@ -14,4 +14,7 @@ namespace covtrace {
 /// and one where there is nothing to be seen. Does nothing to a scene that is complete.
 void complete(SceneDescription& scene);
 
+/// Adds the sky and the key light of `complete`. `where`: the place that they are told to be from.
+void add_default_lights(SceneDescription& scene, const SourceLocation& where);
+
 }  // namespace covtrace

@@ -257,6 +257,10 @@ struct SceneDescription {
     /// Whether its file has no light, and all light is from outside: that of stand-ins
     /// (`complete`), or an environment that took their place.
     bool is_lit_from_outside = false;
+    /// The warning of a file whose only lamps are surfaces that glow, where its format has viewers
+    /// light the rest: the renderer gives it out with the stand-ins for light where little of what
+    /// is seen is reached by the glow. Empty where another light took their place.
+    std::optional<Warning> glow_alone;
     /// Bounds of the shapes at some moments of a whole animation, in world space, where the scene
     /// is a frame of one: a camera and lights that the file lacks are placed by them, and stand
     /// still. Else empty.

@@ -44,6 +44,22 @@ def glowing_room(emission):
     })
 
 
+def lamp_and_floor(lamp_height):
+    """A glTF file: a floor of 2 by 2 at z = 0 and, turned down to it, a one-sided lamp of that size at the height."""
+    data = struct.pack("<12f", -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    lamp = {"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 5}}}
+    return json.dumps({
+        "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_materials_emissive_strength"],
+        "nodes": [{"mesh": 0}, {"mesh": 1, "rotation": [1, 0, 0, 0], "translation": [0, 0, lamp_height]}],
+        "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0}, "doubleSided": True}, lamp],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": m}]} for m in (0, 1)],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "buffers": [{"byteLength": len(data), "uri": uri(data)}],
+    })
+
+
 class Light(CliTest):
     def seen(self, *arguments, scene=ROOM):
         """The channels and the warnings, as texts."""
@@ -277,6 +293,23 @@ class Light(CliTest):
             told = "".join(text for _, text in warnings_of(result))
             self.assertIn("no lights", told)
             self.assertEqual("walls" in told, is_dark, emission)
+
+    def test_lamps_that_leave_the_view_dark_get_the_light_that_stands_in(self):
+        arguments = ["render", "lamp.gltf", "-o", "out.exr", "--resolution", "16x16", "--spp", "16", "--progress", "none",
+                     "--camera", "eye 0,-1,0.5 target 0,0,0 fov 40"]
+        # Above the floor the lamp lights it, below it nothing that is seen
+        for height, others, is_told in ((2, [], False), (-1, [], True), (-1, ["--environment", "0"], False),
+                                        (-1, ["--light", "0,0,1 power 9"], False), (-1, ["--frames", "0"], True)):
+            self.write("lamp.gltf", lamp_and_floor(height))
+            result = self.run_program(*arguments, *others)
+            self.assertEqual(result.code, DONE, result)
+            told = "".join(text for _, text in warnings_of(result))
+            self.assertEqual("surfaces that glow, which leave most of what is seen dark" in told, is_told, (height, others))
+            image = exr.read(self.folder / ("out.0000.exr" if "--frames" in others else "out.exr")).pixels
+            if "--environment" in others:
+                self.assertEqual(max(image["G"]), 0)
+            else:
+                self.assertGreater(self.mean(image["G"]), 0.05)
 
     def test_scenes_without_shapes_are_told(self):
         sky = ROOM.split("Material")[0]

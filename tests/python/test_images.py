@@ -33,6 +33,14 @@ class Images(unittest.TestCase):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 shown(**wrong)
 
+    def test_names_of_other_libraries_are_known_or_tell_what_is_meant(self):
+        image = covtrace.Image.from_arrays(numpy.zeros((3, 2, 3)), {"Z": numpy.ones((3, 2))})
+        self.assertEqual((image.width, image.height, image.shape), (2, 3, image.rgb.shape))
+        for name, told in (("save", r"write\('picture.png'\)"), ("show", "notebook"), ("Z", r"items, such as \['Z'\]"),
+                           ("frobnicate", "Image has no attribute 'frobnicate'$")):
+            with self.subTest(name), self.assertRaisesRegex(AttributeError, told):
+                getattr(image, name)
+
     def test_pictures_by_an_opencolorio_config(self):
         image = covtrace.Image.from_arrays(numpy.full((2, 2, 3), (0.4, 0.2, 0.1)))
         with tempfile.TemporaryDirectory() as name:

@@ -97,6 +97,8 @@ class Rendering(unittest.TestCase):
             covtrace.render(scene, denoiser="oidn", denoiser_library=fake("version-one"))
         with self.assertRaisesRegex(covtrace.UsageError, "denoiser is 'optix'"):
             covtrace.render(scene, denoiser="optix")
+        with self.assertRaisesRegex(covtrace.UsageError, "denoiser is True; expected one of 'auto', 'oidn', 'none'"):
+            covtrace.render(scene, denoiser=True)
         uniform = covtrace.render(scene, spp=1, method="uniform", denoiser_library=fake("version-one"))
         self.assertIsNone(uniform.statistics["denoiser"])
 

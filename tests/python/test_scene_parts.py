@@ -63,12 +63,23 @@ class Parts(unittest.TestCase):
                                  (metal, "reflectance", r"its values are items, such as \['reflectance'\]"),
                                  (self.scene.lights[0], "I", "its values are items"), (self.scene.area_lights[0], "L", "its values are items"),
                                  (self.scene.shapes[0], "matrix", "has no attribute 'matrix' to set$"),
-                                 (self.scene, "environment", "Scene has no attribute 'environment' to set$")):
+                                 (camera, "eye", r"look_at\(eye, target\) places it"),
+                                 (self.scene, "environment", r"Scene has no attribute 'environment' to set; .*environment=")):
             with self.assertRaisesRegex(AttributeError, told):
                 setattr(part, name, (1, 0, 0))
         self.scene.shapes[0].material = 1
         camera.to_world = moved(0, 1, 6)
         self.assertEqual(self.scene.shapes[0].material, 1)
+
+    def test_attributes_that_are_none_tell_what_is_meant(self):
+        for part, name, told in ((self.scene, "add_light", "light=.* adds lamps"), (self.scene, "width", r"resolution is \(width, height\)"),
+                                 (self.scene, "frobnicate", "Scene has no attribute 'frobnicate'$"),
+                                 (self.scene.camera, "position", "look_at"),
+                                 (self.scene.materials["metal"], "reflectance", r"such as \['reflectance'\]"),
+                                 (self.scene.shapes[0], "matrix", "Shape has no attribute 'matrix'$")):
+            with self.assertRaisesRegex(AttributeError, told):
+                getattr(part, name)
+        self.assertFalse(hasattr(self.scene, "add_light"))
 
     def test_the_extent_follows_the_shapes(self):
         # The floor's corners, the ball of radius 1 at x = 0.25 and the lamp of 0.5 at y = 3.

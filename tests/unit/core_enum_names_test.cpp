@@ -20,7 +20,9 @@ namespace {
 TEST(EnumNames, LeadToNamesAndBack) {
     EXPECT_EQ(name_of(Shape::flat), "flat");
     EXPECT_EQ(value_named<Shape>("round"), Shape::round);
-    EXPECT_EQ(value_named<Shape>("Round"), std::nullopt);
+    EXPECT_EQ(value_named<Shape>("rOund"), Shape::round);
+    EXPECT_EQ(value_named<Shape>("rounds"), std::nullopt);
+    EXPECT_EQ(value_named<Shape>("roun"), std::nullopt);
     EXPECT_EQ(value_named<Shape>(""), std::nullopt);
     static_assert(!NamedEnum<Nameless>);
 }
