@@ -167,13 +167,13 @@ void Geometry::Impl::fill_found(const EmbreeHit& found, const Ray& ray, SurfaceH
     const Vec3d near = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
     if (found.instance == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = 0;
-        hit.shape = top.shape_of_geometry[found.geometry];
+        hit.shape = shape_of(found.geometry, found.instance);
         fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near), hit);
         return;
     }
     hit.instance = found.instance + 1;
     const EmbreeInstance& instance = instances[found.instance];
-    hit.shape = scenes[instance.scene].shape_of_geometry[found.geometry];
+    hit.shape = shape_of(found.geometry, found.instance);
     const Affine map = world_from_local(instance, ray.time);
     const Affine inverse = map.inverse();
     SurfacePoint point =

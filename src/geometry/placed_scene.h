@@ -78,6 +78,12 @@ struct Geometry::Impl {
         return within(ray.origin, farthest_origin) && within(ray.direction, kLongestDirection) &&
                ray.t_max >= 0;
     }
+    /// The shape of a geometry that Embree has met, by its place in Geometry::shapes.
+    uint32_t shape_of(unsigned geometry, unsigned instance) const {
+        const bool is_placed = instance != RTC_INVALID_GEOMETRY_ID;
+        const ShapeScene& met = is_placed ? scenes[instances[instance].scene] : top;
+        return met.shape_of_geometry[geometry];
+    }
     /// Finds the nearest hit of the shapes in `mask`, whatever alpha says there.
     bool nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
     /// Describes the place of a hit of `ray`: of triangles on each other the one with its front to

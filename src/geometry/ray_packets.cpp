@@ -46,9 +46,18 @@ void Geometry::Impl::find_nearest(std::span<HitQuery> packet) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect8(active.lane, top.scene.get(), &context, &query);
+    std::array<const TriangleShape*, kLanes> triangles{};
+    for (size_t k = 0; k < packet.size(); ++k) {
+        packet[k].found = active.lane[k] != 0 && query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+        if (!packet[k].found) continue;
+        triangles[k] = std::get_if<TriangleShape>(
+            &local[shape_of(query.hit.geomID[k], query.hit.instID[0][k])]);
+        if (triangles[k]) prefetch_corner_numbers(*triangles[k], query.hit.primID[k]);
+    }
+    for (size_t k = 0; k < packet.size(); ++k)
+        if (triangles[k]) prefetch_corners(*triangles[k], query.hit.primID[k]);
     for (size_t k = 0; k < packet.size(); ++k) {
         HitQuery& q = packet[k];
-        q.found = active.lane[k] != 0 && query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
         if (q.found)
             fill({query.ray.tfar[k],
                   query.hit.geomID[k],

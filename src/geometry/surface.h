@@ -97,6 +97,11 @@ std::vector<Vec3> transform_points(const std::vector<Vec3>& positions, const Tra
 TriangleShape make_triangle_shape(const std::shared_ptr<const TriangleMesh>& mesh,
                                   const Transform& local_from_object, bool reverse);
 SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2 barycentric);
+/// Asks for the memory of a triangle's corner numbers.
+void prefetch_corner_numbers(const TriangleShape& shape, uint32_t primitive);
+/// Asks for the memory that `triangle_point` reads at the corners. It reads their numbers, best
+/// some time after these were asked for.
+void prefetch_corners(const TriangleShape& shape, uint32_t primitive);
 SurfaceDerivatives triangle_derivatives(const TriangleShape& shape, uint32_t primitive,
                                         Vec2 barycentric);
 PatchShape make_patch_shape(const std::shared_ptr<const BilinearMesh>& mesh,

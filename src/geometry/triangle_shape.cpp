@@ -46,6 +46,19 @@ TriangleShape make_triangle_shape(const std::shared_ptr<const TriangleMesh>& mes
     return shape;
 }
 
+void prefetch_corner_numbers(const TriangleShape& shape, uint32_t primitive) {
+    __builtin_prefetch(&shape.mesh->triangles[primitive]);
+}
+
+void prefetch_corners(const TriangleShape& shape, uint32_t primitive) {
+    const TriangleMesh& mesh = *shape.mesh;
+    for (const uint32_t corner : mesh.triangles[primitive]) {
+        __builtin_prefetch(&shape.positions[corner]);
+        if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[corner]);
+        if (!mesh.uvs.empty()) __builtin_prefetch(&mesh.uvs[corner]);
+    }
+}
+
 SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2 barycentric) {
     const Corners c = corners(shape, primitive);
     const double b1 = barycentric.x, b2 = barycentric.y;

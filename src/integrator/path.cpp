@@ -39,8 +39,11 @@ uint32_t PathTracer::pairs_to_come() const {
                  : static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce;
 }
 
-void PathTracer::prefetch() {
-    if (draws_ahead_) scene_.lights.continue_draw(light_draw_);
+void PathTracer::prefetch(bool found) {
+    if (!found)
+        scene_.lights.prefetch_environment(ray_.direction);
+    else if (draws_ahead_)
+        scene_.lights.continue_draw(light_draw_);
 }
 
 bool PathTracer::meet(bool found) {

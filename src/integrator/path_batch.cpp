@@ -27,8 +27,7 @@ bool trace_paths(const Geometry& geometry, std::span<PathTracer> paths, const St
             geometry.intersect_seen(queries);
         else
             geometry.intersect(queries);
-        for (size_t i = 0; i < count; ++i)
-            if (queries[i].found) alive[i]->prefetch();
+        for (size_t i = 0; i < count; ++i) alive[i]->prefetch(queries[i].found);
         // Meet it: paths that end leave the others
         size_t left = 0, shadow_count = 0;
         for (size_t i = 0; i < count; ++i) {

@@ -7,6 +7,15 @@
 
 namespace covtrace {
 
+namespace {
+
+/// Whether it is known that a sample brings no light.
+bool is_without_light(const LightSample& light) {
+    return !light.is_to_be_looked_at && (is_black(light.radiance) || !(light.pdf > 0));
+}
+
+}  // namespace
+
 void PathTracer::record_last_way(float length) {
     if (!record_ || record_->count != static_cast<int>(result_.vertices)) return;
     record_->escape_direction = ray_.direction;
@@ -79,8 +88,9 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, floa
     // Sample a light
     const auto light = scene_.lights.finish_draw(
         hit.position, lit_.normal, hit.time, u_select,
-        draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, lit_.sky_cell, lit_.lamp_factors);
-    if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
+        draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, lit_.sky_cell, lit_.lamp_factors,
+        !vertex && !scene_.lights.kinds_differ());
+    if (!light || is_without_light(*light)) return;
     // Evaluate the BSDF for its direction
     const Vec3 wi_local = surface.frame.to_local(light->wi);
     const BsdfValue value = eval_direction(surface, wi_local, light->wi);
@@ -102,7 +112,7 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
     if (!contains(light.visible_to, shadow.kind)) return false;
     if (scene_.lights.kinds_differ() && !light.is_delta && !std::isfinite(light.distance))
         light.radiance = scene_.lights.environment(shadow.origin, light.wi, shadow.kind);
-    if (is_black(light.radiance) || !(light.pdf > 0)) return false;
+    if (is_without_light(light)) return false;
     // Aim at the light from the moved origin
     if (!(aim(shadow, light) > 0)) return false;
     // Find the way to the point itself from differences of near points, which are exact
@@ -116,6 +126,7 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
                       beta_ * value.f,
                       light.radiance,
                       light.pdf,
+                      light.is_to_be_looked_at,
                       light.is_delta ? 0.0f : value.pdf,
                       lit_,
                       vertex};
@@ -130,9 +141,17 @@ void PathTracer::add_sampled_light(bool occluded) {
     ++result_.rays.shadow;
     // No way through panes leads to a light without extent
     if (occluded && samples_through_panes_ && sampled_light_->path_pdf > 0) return;
-    const SampledLight light = *sampled_light_;
+    SampledLight light = *sampled_light_;
     sampled_light_.reset();
     if (occluded) return;
+    if (light.is_to_be_looked_at) {
+        const LitPlace& place = light.place;
+        const Lights::Sky sky = scene_.lights.sky(place.position, place.normal, light.ray.direction,
+                                                  place.sky_cell, light.ray.kind);
+        if (!(sky.pdf > 0) || is_black(sky.radiance)) return;
+        light.radiance = sky.radiance;
+        light.pdf = sky.pdf;
+    }
     const Rgb visible =
         visibility(scene_, light.ray, light.distance, light.medium, result_.rays.shadow);
     if (is_black(visible)) return;

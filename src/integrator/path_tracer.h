@@ -50,8 +50,8 @@ class PathTracer {
     const Ray& next_ray();
     /// Where the nearest hit of that ray goes.
     SurfaceHit& hit() { return hit_; }
-    /// Asks for memory that the path needs where it has hit something.
-    void prefetch();
+    /// Asks for memory that the path needs next, by whether it has found something.
+    void prefetch(bool found);
     /// Goes on to the next ray, given what has become of the last one; returns false where the path
     /// ends. Either way it may have a ray to a light to be followed first.
     bool meet(bool found);
@@ -99,6 +99,8 @@ class PathTracer {
         Rgb scattered;         ///< what the path scatters of light from there
         Rgb radiance;          ///< the light
         float pdf = 0;         ///< density of the sample
+        /// Whether light and density are to be had by its direction (LightSample).
+        bool is_to_be_looked_at = false;
         /// Density with which the path would have found its direction; 0 for delta lights.
         float path_pdf = 0;
         LitPlace place;

@@ -45,6 +45,12 @@ class Environment {
     float pdf(Vec3 p, Vec3 n, Vec3 w) const { return look(p, n, w).pdf; }
     /// Radiance and density together, for less than both one by one.
     EnvironmentMap::Sight look(Vec3 p, Vec3 n, Vec3 w) const;
+    /// Asks for the memory that `look` reads of the image.
+    void prefetch(Vec3 w) const {
+        if (!is_map()) return;
+        const Vec3 local = to_light_(w);
+        map_->prefetch(is_rigid_ ? local : normalize(local));
+    }
     /// The disc, if the light is one.
     const DistantDisc* disc() const { return disc_ ? &*disc_ : nullptr; }
     /// Rough irradiance of a surface at p with the unit normal n, mean of the channels: of a map,

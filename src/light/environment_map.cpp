@@ -124,12 +124,27 @@ EnvironmentMap::Sight EnvironmentMap::look(Vec3 w) const {
                                          : interpolated(uv, std::sqrt(w.x * w.x + w.y * w.y));
 }
 
-EnvironmentMap::Sight EnvironmentMap::nearest(Vec2 uv) const {
+void EnvironmentMap::prefetch(Vec3 w) const {
+    const Vec2 uv = to_square(w);
+    if (layout_ == Layout::equal_area) {
+        __builtin_prefetch(&nearest_texel(uv));
+        return;
+    }
+    const Rgb* upper = &texel(position(uv.x, width_).index, position(uv.y, height_).index);
+    __builtin_prefetch(upper);
+    __builtin_prefetch(upper + (width_ + 2));
+}
+
+const Rgb& EnvironmentMap::nearest_texel(Vec2 uv) const {
     // A coordinate that is not a number gets any texel: its sample is rejected later.
     const auto index = [](float s, int n) {
         return s > 0 ? static_cast<int>(std::min(s * float(n), float(n - 1))) : 0;
     };
-    const Rgb& c = texel(index(uv.x, width_), index(uv.y, height_));
+    return texel(index(uv.x, width_), index(uv.y, height_));
+}
+
+EnvironmentMap::Sight EnvironmentMap::nearest(Vec2 uv) const {
+    const Rgb& c = nearest_texel(uv);
     return {c, density_ * drawn(c)};
 }
 

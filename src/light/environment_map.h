@@ -67,6 +67,8 @@ class EnvironmentMap {
         float pdf = 0;
     };
     Sight look(Vec3 w) const;
+    /// Asks for the memory that `look` reads for a direction.
+    void prefetch(Vec3 w) const;
 
     /// Mean radiance over the sphere.
     Rgb mean() const { return mean_; }
@@ -78,6 +80,7 @@ class EnvironmentMap {
   private:
     EnvironmentMap(int width, int height);
     Vec2 to_square(Vec3 w) const;
+    const Rgb& nearest_texel(Vec2 uv) const;
     Sight nearest(Vec2 uv) const;
     Sight interpolated(Vec2 uv, float polar_sine) const;
     Vec3 to_direction(Vec2 uv) const;

@@ -81,7 +81,8 @@ Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w
 
 std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 p, Vec3 n,
                                                          float u_select, Draw draw,
-                                                         const SkyCell* cell) const {
+                                                         const SkyCell* cell,
+                                                         bool looks_later) const {
     // The last light with any weight takes the probability that rounding leaves over.
     float rest = u_select * share.weight, chosen_weight = 0;
     size_t chosen = 0;
@@ -105,6 +106,11 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
     const Environment& environment_light = environments[chosen - distants.size()];
     if (cell && !environment_light.disc() && rest / chosen_weight < cell->share) {
         s.wi = cell->sample(draw.u);
+        if (looks_later) {
+            environment_light.prefetch(s.wi);
+            s.is_to_be_looked_at = true;
+            return s;
+        }
     } else {
         advance(environment_light, draw, 2);
         s.wi = environment_light.direction(p, n, draw.sky);

@@ -260,6 +260,10 @@ bool Lights::draws_ahead() const {
     return impl_->infinite_count() == 1 && has_environment() && impl_->environments[0].is_map();
 }
 
+void Lights::prefetch_environment(Vec3 w) const {
+    for (const Environment& environment : impl_->environments) environment.prefetch(w);
+}
+
 Lights::Draw Lights::begin_draw(Vec2 u) const {
     Draw draw{u, {}, 0};
     if (draws_ahead()) impl_->advance(impl_->environments[0], draw, 1);
@@ -272,10 +276,11 @@ void Lights::continue_draw(Draw& draw) const {
 
 std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float u_select,
                                                Draw draw, const SkyCell* cell,
-                                               LightTree::Factors factors) const {
+                                               LightTree::Factors factors, bool looks_later) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
-        return impl_->sample_infinite(share, p, n, u_select / share.probability, draw, cell);
+        return impl_->sample_infinite(share, p, n, u_select / share.probability, draw, cell,
+                                      looks_later);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;
     const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);

@@ -30,6 +30,9 @@ struct LightSample {
     int light = -1;  ///< id for LightSpectra::source_spectrum
     Vec3 position;   ///< where rays from the shading point end, clear of the light's own surface
     Vec3 normal;     ///< of area lights: unit, on the emitting outside
+    /// Whether `radiance` and `pdf` are still to be had, by Lights::sky for `wi`: the image's
+    /// memory was asked for, and does not answer at once.
+    bool is_to_be_looked_at = false;
     /// Scattered rays that find the light. Others do not carry it, whether they hit the light or
     /// it is sampled for them.
     RayKinds visible_to = kEveryRay;
@@ -107,10 +110,13 @@ class Lights {
     void continue_draw(Draw& draw) const;
     /// Finishes `sample` with a draw that was taken as far as time allowed. A share of the samples
     /// of the sky, but for its discs, follows `cell`, if there is one.
-    /// The choice among finite lights is made with `factors`.
+    /// The choice among finite lights is made with `factors`. With `looks_later` samples that
+    /// follow the cell are to be looked at by the caller (LightSample::is_to_be_looked_at), black
+    /// ones among them.
     std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select, Draw draw,
                                            const SkyCell* cell = nullptr,
-                                           LightTree::Factors factors = {}) const;
+                                           LightTree::Factors factors = {},
+                                           bool looks_later = false) const;
 
     /// A sample of a finite light to learn from.
     struct Trial {
@@ -165,6 +171,10 @@ class Lights {
     Sky sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell = nullptr,
             RayKind kind = RayKind::any) const;
     float environment_pdf(Vec3 p, Vec3 n, Vec3 w) const { return sky(p, n, w).pdf; }
+
+    /// Asks for the memory that `environment` and `sky` read for a direction, best before other
+    /// work that takes as long as memory does to answer.
+    void prefetch_environment(Vec3 w) const;
 
     /// All emissive shapes that rays can meet, each as a whole.
     std::vector<DistantView> distant_views() const;

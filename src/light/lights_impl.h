@@ -78,10 +78,11 @@ struct Lights::Impl {
     std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
                                            Vec2 u) const;
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
-    /// Chooses an infinite light by its weight, then a direction.
+    /// Chooses an infinite light by its weight, then a direction. `looks_later`: as of
+    /// Lights::finish_draw.
     std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 p, Vec3 n,
-                                               float u_select, Draw draw,
-                                               const SkyCell* cell) const;
+                                               float u_select, Draw draw, const SkyCell* cell,
+                                               bool looks_later) const;
     /// Takes a draw of `light` up to the given number of steps (Lights::Draw::steps).
     void advance(const Environment& light, Draw& draw, int steps) const;
 
