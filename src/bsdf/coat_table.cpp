@@ -1,7 +1,6 @@
 #include "bsdf/coat_table.h"
 
-#include "bsdf/fresnel.h"
-#include "bsdf/ggx.h"
+#include "bsdf/facet_quadrature.h"
 #include "bsdf/hemisphere_mean.h"
 
 namespace covtrace {
@@ -30,62 +29,15 @@ InterfaceShares smooth_shares(const Interface& side, float cos_o) {
             (1 - f.reflectance) * attenuation(side.gap_transmitted, f.cos_t)};
 }
 
-/// Nodes and weights on [0, 1], dense at both ends: evenly spaced s for x = sin^2(pi s / 2), which
-/// makes integrands smooth that go like a square root at an end. The first s is `offset`, in (0,
-/// 1), of their distance; in the middle of it as a rule.
-template <int n>
-struct Quadrature {
-    std::array<float, n> x, weight;
-    explicit Quadrature(double offset = 0.5) {
-        double sum = 0;
-        for (int i = 0; i < n; ++i) sum += std::sin(M_PI * (i + offset) / n);
-        for (int i = 0; i < n; ++i) {
-            const double angle = M_PI * (i + offset) / n;
-            x[i] = static_cast<float>((1 - std::cos(angle)) / 2);
-            weight[i] = static_cast<float>(std::sin(angle) / sum);
-        }
-    }
-};
-
-/// Numbers of nodes, by azimuth and polar angle, on the unit square that visible normals are
-/// sampled from. Azimuths cover one half of it, as both sides of the plane of incidence are alike.
-/// Each has polar angles of its own, so that the edge of total reflection, a circle about wo, lies
-/// between them in as many ways: shares are within 0.5 %.
-constexpr int kAzimuths = 24, kPolar = 16;
-
-struct PolarNodes {
-    std::vector<Quadrature<kPolar>> of_azimuth;
-    PolarNodes() {
-        for (int i = 0; i < kAzimuths; ++i) of_azimuth.emplace_back((i + 0.5) / kAzimuths);
-    }
-};
-
 InterfaceShares rough_shares(const Interface& side, float alpha, float cos_o) {
-    const Ggx ggx{alpha, alpha};
-    const Vec3 wo{safe_sqrt(1 - cos_o * cos_o), 0, cos_o};
-    static const PolarNodes nodes;
     InterfaceShares sum;
-    for (int i = 0; i < kAzimuths; ++i) {
-        const Quadrature<kPolar>& polar = nodes.of_azimuth[static_cast<size_t>(i)];
-        const float azimuth = (static_cast<float>(i) + 0.5f) / (2 * kAzimuths);
-        for (int j = 0; j < kPolar; ++j) {
-            const float weight = polar.weight[j] / kAzimuths;
-            const Vec3 m = ggx.sample_visible_normal(wo, {azimuth, polar.x[j]});
-            const float cos_m = dot(wo, m);
-            if (!(cos_m > 0)) continue;
-            const DielectricFresnel f = fresnel_dielectric(cos_m, side.eta);
-            const Vec3 r = m * (2 * cos_m) - wo;
-            if (r.z > 0)
-                sum.reflected += weight * f.reflectance * ggx.g2_over_g1(wo, r) *
-                                 attenuation(side.gap_reflected, r.z);
-            if (f.reflectance == 1) continue;
-            const Vec3 t = wo / side.eta - m * (cos_m / side.eta - f.cos_t);
-            if (t.z > 0)
-                sum.transmitted += weight * (1 - f.reflectance) *
-                                   ggx.g2_over_g1(wo, {-t.x, -t.y, t.z}) *
-                                   attenuation(side.gap_transmitted, t.z);
-        }
-    }
+    for_each_facet(side.eta, alpha, cos_o, [&](const MetFacet& facet) {
+        const float f = facet.fresnel.reflectance;
+        sum.reflected += facet.weight * f * facet.kept_reflected *
+                         attenuation(side.gap_reflected, facet.cos_reflected);
+        sum.transmitted += facet.weight * (1 - f) * facet.kept_transmitted *
+                           attenuation(side.gap_transmitted, facet.cos_transmitted);
+    });
     return sum;
 }
 
@@ -124,12 +76,7 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
             const InterfaceShares s = interface_shares(outside, alpha, x * x);
             nodes[i + 1] = {s.transmitted, s.reflected};
         }
-        // Beyond the table both shares are taken as even functions of sqrt(cos) at grazing angles,
-        // and as linear ones past the normal.
-        nodes[0] = nodes[2];
-        const Shares &last = nodes[kNodes], &before = nodes[kNodes - 1];
-        nodes[kNodes + 1] = {2 * last.transmission - before.transmission,
-                             2 * last.reflection - before.reflection};
+        continue_past_ends(nodes);
         internal_reflectance_[row] = cosine_weighted_mean(inside_kink, [&](float cos_theta) {
             return attenuation(thickness, cos_theta) *
                    interface_shares(inside, alpha, cos_theta).reflected;

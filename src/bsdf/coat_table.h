@@ -57,10 +57,48 @@ class CoatTable {
         return row_of(std::sqrt(0.5f * (sqr(alpha_x) + sqr(alpha_y))));
     }
 
+    /// Values at the nodes of each row, with one node more at either end for the cubic
+    /// interpolation.
+    template <typename T>
+    using PerAngle = std::array<std::array<T, kNodes + 2>, kRows>;
+    /// The place of a direction in a table: between rows values are interpolated linearly, between
+    /// nodes by Catmull-Rom.
+    class Place {
+      public:
+        Place(float row, float cos_theta);
+        /// The interpolated `value(entry)`, a number or a colour, of the entries around the place.
+        template <typename T, typename Value>
+        auto interpolate(const PerAngle<T>& table, const Value& value) const {
+            const auto along = [&](int row) {
+                const T* at = table[row].data() + node_;
+                return value(at[0]) * weights_[0] + value(at[1]) * weights_[1] +
+                       value(at[2]) * weights_[2] + value(at[3]) * weights_[3];
+            };
+            return along(row_) * (1 - of_next_row_) + along(row_ + 1) * of_next_row_;
+        }
+
+      private:
+        int row_, node_;
+        float of_next_row_;
+        std::array<float, 4> weights_;
+    };
+    /// Fills the nodes beyond both ends of a row: as of an even function of sqrt(cos) at grazing
+    /// angles, and of a linear one past the normal.
+    template <typename T>
+    static void continue_past_ends(std::array<T, kNodes + 2>& nodes) {
+        nodes[0] = nodes[2];
+        nodes[kNodes + 1] = 2.0f * nodes[kNodes] - nodes[kNodes - 1];
+    }
     /// Shares of the light that arrives from outside.
     struct Shares {
         float transmission;  ///< share that reaches the base: T
         float reflection;    ///< share that the interface reflects
+        friend Shares operator*(float k, Shares s) {
+            return {k * s.transmission, k * s.reflection};
+        }
+        friend Shares operator-(Shares a, Shares b) {
+            return {a.transmission - b.transmission, a.reflection - b.reflection};
+        }
     };
     /// The shares of light from a direction with cosine `cos_theta` > 0.
     Shares shares(float row, float cos_theta) const;
@@ -78,14 +116,11 @@ class CoatTable {
 
   private:
     using PerRow = std::array<float, kRows>;
-    /// Shares at the nodes of each row, with one node more at either end for the cubic
-    /// interpolation.
-    using PerAngle = std::array<std::array<Shares, kNodes + 2>, kRows>;
     static float lookup(const PerRow& values, float row);
 
     float eta_, thickness_;
     bool gives_back_ = false;
-    PerAngle shares_;
+    PerAngle<Shares> shares_;
     PerRow internal_reflectance_, mean_transmission_, mean_reflection_, regained_{};
 };
 
@@ -165,25 +200,22 @@ inline float CoatTable::lookup(const PerRow& values, float row) {
     return values[i] * (1 - t) + values[i + 1] * t;
 }
 
-/// Interpolates linearly between the rows, by Catmull-Rom between the nodes.
-inline CoatTable::Shares CoatTable::shares(float row, float cos_theta) const {
+inline CoatTable::Place::Place(float row, float cos_theta) {
     const float x = std::sqrt(clamp01(cos_theta)) * (kNodes - 1);
-    const int i = std::min(static_cast<int>(x), kNodes - 2);
-    const float t = x - static_cast<float>(i), s = 1 - t;
-    const float w0 = -0.5f * t * s * s, w3 = -0.5f * s * t * t;
-    const float w1 = s - 2 * w0 + w3, w2 = t - 2 * w3 + w0;
-    const int j = std::min(static_cast<int>(row), kRows - 2);
-    const float r = row - static_cast<float>(j);
-    const Shares* a = shares_[j].data() + i;
-    const Shares* b = shares_[j + 1].data() + i;
-    const auto at = [&](float Shares::*which) {
-        const float at_a =
-            a[0].*which * w0 + a[1].*which * w1 + a[2].*which * w2 + a[3].*which * w3;
-        const float at_b =
-            b[0].*which * w0 + b[1].*which * w1 + b[2].*which * w2 + b[3].*which * w3;
-        return at_a * (1 - r) + at_b * r;
-    };
-    return {at(&Shares::transmission), at(&Shares::reflection)};
+    node_ = std::min(static_cast<int>(x), kNodes - 2);
+    const float t = x - static_cast<float>(node_), s = 1 - t;
+    weights_[0] = -0.5f * t * s * s;
+    weights_[3] = -0.5f * s * t * t;
+    weights_[1] = s - 2 * weights_[0] + weights_[3];
+    weights_[2] = t - 2 * weights_[3] + weights_[0];
+    row_ = std::min(static_cast<int>(row), kRows - 2);
+    of_next_row_ = row - static_cast<float>(row_);
+}
+
+inline CoatTable::Shares CoatTable::shares(float row, float cos_theta) const {
+    const Place place(row, cos_theta);
+    return {place.interpolate(shares_, [](const Shares& s) { return s.transmission; }),
+            place.interpolate(shares_, [](const Shares& s) { return s.reflection; })};
 }
 
 }  // namespace covtrace
