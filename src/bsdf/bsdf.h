@@ -82,6 +82,7 @@ struct DiffuseBsdf {
     Rgb reflectance;
 };
 class CoatTable;  // shares of light that a rough border reflects and transmits
+class FilmTable;  // share of light that rough glass under a film keeps
 struct ConductorBsdf {
     Rgb eta, k;                      ///< relative to the outside
     float alpha_x = 0, alpha_y = 0;  ///< 0, 0: a perfect mirror
@@ -104,8 +105,10 @@ struct DielectricBsdf {
     /// Tables of the border as it is met from outside and from inside, where light that meets
     /// several microfacets comes back; none: it is lost. See multiple_scattering.h.
     const CoatTable *from_outside = nullptr, *from_inside = nullptr;
-    float table_row = 0;  ///< of both, for the mean roughness
+    float table_row = 0;  ///< of all, for the mean roughness
     ThinFilm film = {};   ///< over it, outside
+    /// Table of the border where the film covers it; with both others, or not at all.
+    const FilmTable* under_film = nullptr;
 };
 /// A coat's reflectance in place of its index' Fresnel reflectance F: w (r + (1 - r) x), with r the
 /// reflectance at the normal, w the weight, and x = (F - F0) / (1 - F0), which grows from 0 at the

@@ -59,7 +59,7 @@ Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     const std::optional<Microfacet> f = connect(b, wo, wi);
     if (!f) return {};
     const Ggx ggx{b.alpha_x, b.alpha_y};
-    const float d_g =
+    const Rgb d_g =
         gain(b, wo) * ggx.d(f->m) * ggx.g2_over_cos_o(f->wo, f->reflects ? f->wi : mirror_z(f->wi));
     if (f->reflects) return 0.25f * f->reflected.share * d_g;
     // Refraction is equation 21 of Walter et al. 2007, with |eta wi + wo|^2 for the denominator and
@@ -79,7 +79,7 @@ float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
 
 std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
     const bool below = wo.z < 0;
-    const float scale = is_specular(b) ? 1 : gain(b, wo);
+    const Rgb scale = is_specular(b) ? Rgb(1) : gain(b, wo);
     if (below) wo = mirror_z(wo);
     const float eta = below ? 1 / b.eta : b.eta;
 

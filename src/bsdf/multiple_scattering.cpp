@@ -15,9 +15,10 @@ ConductorBsdf with_multiple_scattering(ConductorBsdf metal, const CoatTable& whi
 }
 
 DielectricBsdf with_multiple_scattering(DielectricBsdf glass, const CoatTable& from_outside,
-                                        const CoatTable& from_inside) {
+                                        const CoatTable& from_inside, const FilmTable* under_film) {
     glass.from_outside = &from_outside;
     glass.from_inside = &from_inside;
+    glass.under_film = under_film;
     glass.table_row = CoatTable::row_of(glass.alpha_x, glass.alpha_y);
     return glass;
 }

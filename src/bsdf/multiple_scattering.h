@@ -3,9 +3,10 @@
 ///
 /// E(wo): share of the light along wo that single scattering keeps where nothing is absorbed, of a
 /// metal what it reflects, of glass what it reflects and transmits together; CoatTable has it, by
-/// quadrature, of a border of infinite index for metals and of the glass as met from either side.
-/// Glass gets the gain 1 / E (Turquin 2019, "Practical multiple scattering compensation for
-/// microfacet models"), so that all light leaves; a metal
+/// quadrature, of a border of infinite index for metals and of the glass as met from either side;
+/// that of glass under a film, by colour, is in FilmTable. Glass gets the gain 1 / E (Turquin 2019,
+/// "Practical multiple scattering compensation for microfacet models"), so that all light leaves; a
+/// metal
 ///
 ///    1 + R (1 - E) / E,   R = F mean(E) / (1 - F (1 - mean(E)))
 ///
@@ -26,6 +27,7 @@
 #pragma once
 
 #include "bsdf/coat_table.h"
+#include "bsdf/film_table.h"
 
 namespace covtrace {
 
@@ -33,9 +35,10 @@ namespace covtrace {
 ConductorBsdf with_multiple_scattering(ConductorBsdf metal, const CoatTable& white);
 /// The glass with its later reflections. Tables without a gap: `from_outside` of the index inside
 /// over outside, `from_inside` of its inverse. Where the index varies with the wavelength, they are
-/// those of its middle.
+/// those of its middle. `under_film`: the table of its film, where it has one.
 DielectricBsdf with_multiple_scattering(DielectricBsdf glass, const CoatTable& from_outside,
-                                        const CoatTable& from_inside);
+                                        const CoatTable& from_inside,
+                                        const FilmTable* under_film = nullptr);
 
 /// The rough pane with its later reflections and transmissions, by the gain 1 / E of glass.
 ThinDielectricBsdf with_multiple_scattering(ThinDielectricBsdf pane, const CoatTable& white);
@@ -52,11 +55,15 @@ inline float gain(const ThinDielectricBsdf& b, float cos_o) {
     return b.white ? 1 / b.white->shares(b.table_row, cos_o).reflection : 1;
 }
 /// The same of rough glass, from either side.
-inline float gain(const DielectricBsdf& b, Vec3 wo) {
+inline Rgb gain(const DielectricBsdf& b, Vec3 wo) {
     const CoatTable* table = wo.z > 0 ? b.from_outside : b.from_inside;
-    if (!table) return 1;
-    const CoatTable::Shares s = table->shares(b.table_row, std::abs(wo.z));
-    return 1 / (s.reflection + s.transmission);
+    if (!table) return Rgb(1);
+    const float cos_o = std::abs(wo.z);
+    const CoatTable::Shares s = table->shares(b.table_row, cos_o);
+    const float bare = s.reflection + s.transmission;
+    if (!b.under_film || !(b.film.weight > 0)) return Rgb(1 / bare);
+    return Rgb(1) / lerp(b.film.weight, Rgb(bare),
+                         b.under_film->kept(wo.z < 0, b.table_row, cos_o, b.film.thickness));
 }
 
 }  // namespace covtrace

@@ -51,10 +51,7 @@ float amplitude(float near, float far) {
 Rgb film_reflectance(const ThinFilm& film, float cos_i, Rgb base) {
     constexpr float kGrazing = 1e-3f;  // beyond it both borders reflect all
     cos_i = std::max(cos_i, kGrazing);
-    // A film of no thickness is none: its index goes over to that of the outside, over as many
-    // nanometres as in KHR_materials_iridescence
-    constexpr float kNoFilm = 0.03f;  // nm
-    const float t = clamp01(film.thickness / kNoFilm);
+    const float t = clamp01(film.thickness / kThinnestFilm);
     const float eta = std::lerp(1.0f, film.eta, sqr(t) * (3 - 2 * t));
     const float sin2 = std::max(0.0f, 1 - sqr(cos_i)), sin2_film = sin2 / sqr(eta);
     if (sin2_film >= 1) return Rgb(1);

@@ -13,6 +13,10 @@ struct ThinFilm {
     float thickness = 400;  ///< nanometres, >= 0
 };
 
+/// Thickness, nm, below which a film is none, more and more: its index goes over to that of the
+/// outside, over as many nanometres as in KHR_materials_iridescence.
+inline constexpr float kThinnestFilm = 0.03f;
+
 /// Reflectance of a covered surface in linear Rec.709 for unpolarised light with the cosine
 /// `cos_i`, in [0, 1], to its normal. `base`: what the surface reflects at the normal without the
 /// film; channel by channel it is taken for that of a real index. The formula is Airy's sum,

@@ -73,11 +73,18 @@ void MaterialStore::prepare(const ConductorMaterial& m, Material& material, cons
     if (m.multiple_scattering) material.tables.white = &coats_.get(kWhiteIndex, 0);
 }
 
-void MaterialStore::prepare(const DielectricMaterial& m, Material& material, const TextureStore&) {
+void MaterialStore::prepare(const DielectricMaterial& m, Material& material,
+                            const TextureStore& textures) {
     if (!m.multiple_scattering) return;
     const float eta = refractive_index(m.eta);
     material.tables.from_outside = &coats_.get(eta, 0);
     material.tables.from_inside = &coats_.get(1 / eta, 0);
+    if (!m.film) return;
+    std::optional<float> thickness;
+    if (m.film->thickness < 0 || textures.is_constant(m.film->thickness))
+        thickness = film_thickness(*m.film, textures, kMiddle);
+    material.tables.under_film =
+        &films_.get(eta, refractive_index(m.film->eta), thickness, material.description.where);
 }
 
 void MaterialStore::prepare(const ThinDielectricMaterial& m, Material& material,

@@ -8,6 +8,7 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/coat_table.h"
+#include "bsdf/film_table.h"
 #include "bsdf/measured_brdf.h"
 #include "bsdf/sheen.h"
 #include "colour/illuminant_adaptation.h"
@@ -43,6 +44,7 @@ struct MaterialTables {
     const CoatTable* coat = nullptr;   ///< of a diffuse material's coat
     const CoatTable* white = nullptr;  ///< CoatTint::white, ConductorBsdf::white
     const CoatTable *from_outside = nullptr, *from_inside = nullptr;  ///< DielectricBsdf's
+    const FilmTable* under_film = nullptr;                            ///< DielectricBsdf's
     const MeasuredBrdf* measured = nullptr;
     const SheenTable* sheen = nullptr;
     const CoatTable* clearcoat = nullptr;  ///< ClearcoatLobe::border
@@ -122,7 +124,7 @@ class MaterialStore {
     void prepare(const CoatedConductorMaterial& m, Material& material,
                  const TextureStore& textures);
     void prepare(const ConductorMaterial& m, Material& material, const TextureStore&);
-    void prepare(const DielectricMaterial& m, Material& material, const TextureStore&);
+    void prepare(const DielectricMaterial& m, Material& material, const TextureStore& textures);
     void prepare(const ThinDielectricMaterial& m, Material& material, const TextureStore&);
     void prepare(const MeasuredMaterial& m, Material& material, const TextureStore&);
     template <typename Other>
@@ -132,6 +134,7 @@ class MaterialStore {
     AdaptationTable adaptation_;     ///< for textures that vary
     ReflectancePowersTable powers_;  ///< for textures that vary below a coat
     CoatTables coats_;
+    FilmTables films_;
     std::map<const BrdfTensor*, MeasuredBrdf> measured_;  ///< by their tensors, which are shared
     std::unique_ptr<const SheenTable> sheen_;
     Warnings warnings_;

@@ -56,9 +56,9 @@ Bsdf make(const DielectricMaterial& m, const Values& v, const Tables& tables) {
     DielectricBsdf b{refractive_index(m.eta), alpha.x, alpha.y,
                      m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
     b.film = v.film(m.film);
-    return m.multiple_scattering
-               ? with_multiple_scattering(b, *tables.from_outside, *tables.from_inside)
-               : b;
+    return m.multiple_scattering ? with_multiple_scattering(b, *tables.from_outside,
+                                                            *tables.from_inside, tables.under_film)
+                                 : b;
 }
 
 /// A coat that reflects or lets through all light, over a base.

@@ -14,6 +14,14 @@ inline float refractive_index(float eta) {
     return eta > 0 ? eta : 1;
 }
 
+/// Thickness of a film at one place, nm, >= 0.
+inline float film_thickness(const ThinFilmDescription& film, const TextureStore& textures,
+                            const TexturePoint& at) {
+    if (film.thickness < 0) return ThinFilm{}.thickness;
+    const float thickness = textures.eval_float(film.thickness, at);
+    return std::isfinite(thickness) ? std::max(0.0f, thickness) : 0.0f;
+}
+
 /// Values of a material's textures at one place; `fallback` where the file gives none.
 struct MaterialValues {
     const TextureStore& textures;
@@ -46,10 +54,8 @@ struct MaterialValues {
     }
     ThinFilm film(const std::optional<ThinFilmDescription>& f) const {
         if (!f) return {};
-        const ThinFilm none;
-        const float thickness = number(f->thickness, none.thickness);
-        return {share(number(f->weight, 1)), f->eta,
-                std::isfinite(thickness) ? std::max(0.0f, thickness) : 0.0f};
+        return {share(number(f->weight, 1)), refractive_index(f->eta),
+                film_thickness(*f, textures, at)};
     }
     /// GGX widths of a model that has a roughness.
     template <typename M>

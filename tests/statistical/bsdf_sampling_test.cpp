@@ -45,6 +45,10 @@ std::vector<Case> all_cases() {
     tinted.schlick = metal_of_edge({0.9f, 0.5f, 0}, {0.6f, 1, 0});
     ConductorBsdf filmed = tinted;
     filmed.film = {0.8f, 1.4f, 350};
+    static const CoatTable inner_border(1 / 1.5f, 0);
+    static const FilmTable under_film(FilmKernel(1.5f), 2.5f, 150);
+    DielectricBsdf filmed_glass{1.5f, 0.5f, 0.5f};
+    filmed_glass.film = {0.8f, 2.5f, 150};
     const Vec3 aside = normalize(Vec3{0.2f, -0.3f, 1});
     const Rgb eta(0.2f, 0.92f, 1.1f), k(3.9f, 2.45f, 2.14f), tan(0.7f, 0.5f, 0.2f);
     struct Model {
@@ -62,6 +66,8 @@ std::vector<Case> all_cases() {
         {"conductor_tinted", tinted, 0.4f, 1},
         {"conductor_filmed", filmed, 0.4f, 1},
         {"dielectric_brushed", DielectricBsdf{1.5f, 0.3f, 0.1f}, 0.3f, 1.5f},
+        {"dielectric_filmed",
+         with_multiple_scattering(filmed_glass, border, inner_border, &under_film), 0.5f, 1.5f},
         {"dielectric_thin", DielectricBsdf{1 / 1.33f, 0.2f, 0.2f}, 0.2f, 1 / 1.33f},
         {"pane_brushed", ThinDielectricBsdf{1.5f, tan, 0.3f, 0.1f}, 0.3f, 1},
         {"coated_brushed", make_coated_diffuse(coat, reflectance_powers(tan), 0.1f, 0.3f, 5), 0.3f,

@@ -51,6 +51,14 @@ inline DielectricBsdf bouncing_glass(float alpha) {
     return with_multiple_scattering({1.5f, alpha, alpha, Rgb(0.95f)}, outside, inside);
 }
 
+inline DielectricBsdf bouncing_filmed_glass(float alpha) {
+    static const CoatTable outside(1.5f, 0), inside(1 / 1.5f, 0);
+    static const FilmTable table(FilmKernel(1.5f), 2.5f, 150);
+    DielectricBsdf b{1.5f, alpha, alpha, Rgb(0.95f)};
+    b.film = {0.9f, 2.5f, 150};
+    return with_multiple_scattering(b, outside, inside, &table);
+}
+
 inline CoatedDiffuseBsdf bouncing_satin(float alpha_x, float alpha_y) {
     static const CoatTable table(1.5f, white());
     return make_coated_total(table, {0.7f, 0.5f, 0}, alpha_x, alpha_y, {}, &white());

@@ -47,6 +47,7 @@ std::vector<Case> all_cases() {
         {"frosted_brushed", DielectricBsdf{1.33f, 0.1f, 0.6f}},
         {"filmed_frosted",
          DielectricBsdf{.alpha_x = 0.2f, .alpha_y = 0.2f, .film = {0.9f, 1.8f, 350}}},
+        {"filmed_frosted_bouncing", bouncing_filmed_glass(0.6f)},
         {"bubble", DielectricBsdf{1 / 1.5f, 0.4f, 0.4f}},
         {"nearly_matched", DielectricBsdf{1.001f, 0.3f, 0.3f}},
         {"varnish", make_coated_diffuse(coat(), reflectance_powers(tan), 0, 0, 5)},

@@ -176,6 +176,32 @@ TEST_F(MaterialTest, MultipleScatteringIsForEveryRoughnessOfATexture) {
     }
 }
 
+TEST_F(MaterialTest, FilmsOnRoughGlassHaveTheTableOfTheirThickness) {
+    DielectricMaterial even, uneven;
+    even.u_roughness = even.v_roughness = uneven.u_roughness = uneven.v_roughness = constant(0.5f);
+    even.multiple_scattering = uneven.multiple_scattering = true;
+    even.film = {1.4f, -1, constant(250.0f)};
+    uneven.film = {1.4f, -1, checks(constant(250.0f), constant(350.0f))};
+    DielectricMaterial patchy = even, once = even;
+    patchy.film->weight = checks(constant(1.0f), constant(0.3f));
+    once.multiple_scattering = false;
+    const MaterialId even_id = add(even), uneven_id = add(uneven), patchy_id = add(patchy),
+                     once_id = add(once);
+    build();
+    const auto one = bsdf_at<DielectricBsdf>(even_id);
+    ASSERT_TRUE(one.under_film);
+    EXPECT_EQ(one.under_film->thickness(), 250.0f);
+    EXPECT_EQ(one.under_film->film_eta(), 1.4f);
+    EXPECT_EQ(bsdf_at<DielectricBsdf>(patchy_id).under_film, one.under_film);
+    EXPECT_FALSE(bsdf_at<DielectricBsdf>(once_id).under_film);
+    for (const Vec2 uv : {Vec2{0.5f, 0.5f}, Vec2{1.5f, 0.5f}}) {
+        const auto any = bsdf_at<DielectricBsdf>(uneven_id, uv);
+        ASSERT_TRUE(any.under_film);
+        EXPECT_FALSE(any.under_film->thickness());
+        EXPECT_EQ(any.film.thickness, uv.x < 1 ? 250.0f : 350.0f);
+    }
+}
+
 TEST_F(MaterialTest, DielectricWithTexturedRoughness) {
     DielectricMaterial glass;
     glass.eta = 1.33f;
