@@ -117,7 +117,7 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
     if (!(density > 0) || !std::isfinite(density)) return {};
     return BsdfSample{below ? mirror_z(wi) : wi,
                       b.transmittance * ((Rgb(1) - share) / Rgb(1 - chance)) *
-                          (scale * ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)),
+                          (scale * ggx.g2_over_g1(wo, mirror_z(wi)) / Rgb(sqr(eta))),
                       density, LobeKind::glossy_transmission, eta};
 }
 
