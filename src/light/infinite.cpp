@@ -50,6 +50,10 @@ InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     return share;
 }
 
+void Lights::prefetch_environment(Vec3 w) const {
+    for (const Environment& environment : impl_->environments) environment.prefetch(w);
+}
+
 Rgb Lights::Impl::environment(Vec3 p, Vec3 w, RayKind kind) const {
     Rgb sum;
     for (size_t i = 0; i < environments.size(); ++i)

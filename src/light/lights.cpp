@@ -260,10 +260,6 @@ bool Lights::draws_ahead() const {
     return impl_->infinite_count() == 1 && has_environment() && impl_->environments[0].is_map();
 }
 
-void Lights::prefetch_environment(Vec3 w) const {
-    for (const Environment& environment : impl_->environments) environment.prefetch(w);
-}
-
 Lights::Draw Lights::begin_draw(Vec2 u) const {
     Draw draw{u, {}, 0};
     if (draws_ahead()) impl_->advance(impl_->environments[0], draw, 1);
