@@ -104,6 +104,8 @@ const SceneDescription& LitScene::lit_description(const std::string& isa) {
     light_glow_alone(description, geometry, textures);
     has_open_walls = open_walls(description, geometry, textures);
     if (has_open_walls) {
+        // The memory of the one with walls is free before the other one is built
+        { const Geometry with_walls = std::move(geometry); }
         geometry = Geometry(description, isa);
         geometry.set_alpha(alpha);
     }
