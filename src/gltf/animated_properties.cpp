@@ -90,41 +90,58 @@ bool is_true(const std::vector<double>& value) {
     return value[0] >= 0.5;  // outputs of animations are numbers
 }
 
-/// Whether a value may take the place of what a file has.
-bool may_replace(const json& place, const std::vector<double>& value) {
-    if (place.is_array()) return place.size() == value.size();
-    return place.is_null() || ((place.is_number() || place.is_boolean()) && value.size() == 1);
+/// How many numbers a property has that a file leaves at its default.
+size_t default_size(const Path& path) {
+    const std::string &name = path.back(), &parent = path[path.size() - 2];
+    if (name == "specularFactor") return parent == "KHR_materials_pbrSpecularGlossiness" ? 3 : 1;
+    if (name == "scale") return parent == "KHR_texture_transform" ? 2 : 1;
+    if (name == "baseColorFactor" || name == "diffuseFactor") return 4;
+    if (name == "offset") return 2;
+    const bool is_colour = name == "color" || name == "emissiveFactor" ||
+                           name.ends_with("ColorFactor") || name == "attenuationColor";
+    return is_colour ? 3 : 1;
 }
 
-/// Sets the value that a path names; objects that are not there are made. Returns whether the path
-/// leads through objects and elements of lists to what may have that value.
-bool set(json& root, const Path& path, const std::vector<double>& value) {
-    json* place = &root;
+/// How many numbers what a path names has; none where that is not of numbers.
+std::optional<size_t> size_of(const json& root, const Path& path) {
+    const json* place = &root;
     for (const std::string& part : path) {
         if (place->is_array()) {
             const auto index = pointer_index(part, place->size());
-            if (!index) return false;
+            if (!index) return std::nullopt;
             place = &(*place)[*index];
-        } else if (place->is_object() || place->is_null()) {
+        } else if (place->is_object() && place->contains(part)) {
             place = &(*place)[part];
+        } else if (place->is_object() || place->is_null()) {
+            return default_size(path);
         } else {
-            return false;
+            return std::nullopt;
         }
     }
-    if (!may_replace(*place, value)) return false;
+    if (place->is_array()) return place->size();
+    if (place->is_number() || place->is_boolean()) return 1;
+    return std::nullopt;
+}
+
+/// Sets what a path names, which has as many numbers as the value; objects that are not there are
+/// made.
+void set(json& root, const Path& path, const std::vector<double>& value) {
+    json* place = &root;
+    for (const std::string& part : path)
+        place =
+            place->is_array() ? &(*place)[*pointer_index(part, place->size())] : &(*place)[part];
     if (place->is_boolean())
         *place = is_true(value);
     else if (value.size() == 1 && !place->is_array())
         *place = value[0];
     else
         *place = value;
-    return true;
 }
 
 std::string text_of(const Path& path) {
     std::string text;
     for (const std::string& part : path) text += '/' + part;
-    return in_quotes(text);
+    return pointer_in_quotes(text);
 }
 
 /// Reads the JSON of the properties into the document, by the library that has read the whole.
@@ -161,6 +178,11 @@ std::vector<std::string> pointer_path(const std::string& pointer) {
         }
     }
     return path;
+}
+
+std::string pointer_in_quotes(const std::string& pointer) {
+    constexpr size_t kLongest = 160;  // textures' transforms have 100, and end with what tells most
+    return in_quotes(pointer, kLongest);
 }
 
 std::optional<size_t> pointer_index(const std::string& part, size_t count) {
@@ -224,7 +246,9 @@ void AnimatedProperties::apply(double time, Document& document, WarningLog& log)
         else if (is_visibility(document, path))
             document.model.nodes[index].extensions[kVisibility] = tinygltf::Value(
                 tinygltf::Value::Object{{"visible", tinygltf::Value(is_true(value))}});
-        else if (!set(properties, path, value))
+        else if (size_of(properties, path) == value.size())
+            set(properties, path, value);
+        else
             log.add(document.place("animations"),
                     "what KHR_animation_pointer moves here rests: " + text_of(path) +
                         " cannot have values of " + std::to_string(value.size()) +

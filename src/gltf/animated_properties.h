@@ -16,6 +16,8 @@ namespace covtrace::gltf {
 /// The names and numbers of a JSON pointer (RFC 6901), "/materials/0" as {"materials", "0"}; empty
 /// where the text is no pointer.
 std::vector<std::string> pointer_path(const std::string& pointer);
+/// A pointer for messages, with its end, which tells what is meant.
+std::string pointer_in_quotes(const std::string& pointer);
 
 /// The number that a part of a pointer is; none where it is another name, or not below `count`.
 std::optional<size_t> pointer_index(const std::string& part, size_t count);

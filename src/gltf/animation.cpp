@@ -69,7 +69,7 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
                                : std::nullopt;
         if (!named) {
             log.add(document.place(place),
-                    "what KHR_animation_pointer moves here rests: " + in_quotes(pointer) +
+                    "what KHR_animation_pointer moves here rests: " + pointer_in_quotes(pointer) +
                         " is nothing of a node, mesh, material, camera or light of the file");
             return;
         }

@@ -274,6 +274,33 @@ TEST(GltfAnimatedProperties, ValuesOfAnotherSizeAreTold) {
     }
 }
 
+TEST(GltfAnimatedProperties, ValuesOfAnotherSizeThanTheDefaultAreTold) {
+    for (const char* pointer :
+         {"/materials/0/emissiveFactor", "/materials/0/pbrMetallicRoughness/roughnessFactor",
+          "/materials/0/pbrMetallicRoughness/baseColorFactor",
+          "/materials/0/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
+          "/materials/0/extensions/KHR_materials_specular/specularColorFactor",
+          "/materials/0/extensions/KHR_materials_specular/specularFactor",
+          "/materials/0/extensions/KHR_materials_pbrSpecularGlossiness/specularFactor",
+          "/materials/0/extensions/KHR_materials_volume/attenuationColor",
+          "/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/"
+          "rotation"}) {
+        GltfFile file =
+            with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                           {"extensions",
+                            {{"KHR_materials_volume", json::object()},
+                             {"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+        file.root["images"] = {
+            {{"bufferView", file.add_view("bytes of an image")}, {"mimeType", "image/png"}}};
+        file.root["textures"] = {{{"source", 0}}};
+        animate(file, pointer, {1, 1, 1, 1}, "VEC2", 2);
+        const std::string warnings = all_warnings(halfway(file));
+        EXPECT_TRUE(contains(
+            warnings, std::string("rests: \"") + pointer + "\" cannot have values of 2 numbers"))
+            << pointer << ": " << warnings;
+    }
+}
+
 TEST(GltfAnimatedProperties, TheFirstOfTwoCounts) {
     GltfFile file = with_material({{"emissiveFactor", {1, 1, 1}}});
     for (const float strength : {3.0f, 7.0f})
