@@ -54,7 +54,9 @@ class RunningRender:
             return
         self.image = image
         if self.progress is not None and image.complete:
-            self.progress = self.progress._replace(fraction=1.0, remaining=0.0)
+            done = image.statistics  # the last report may have been long before the end
+            self.progress = self.progress._replace(fraction=1.0, samples_per_pixel=done["spp"], elapsed=done["seconds_total"],
+                                                   remaining=0.0)
         self._future.set_result(image)
 
     def _note_progress(self, progress: Progress) -> None:

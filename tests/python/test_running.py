@@ -28,6 +28,8 @@ class Running(unittest.TestCase):
         self.assertTrue(covtrace.compare(image, covtrace.render(self.scene(), **options)).identical)
         self.assertIn("done", repr(running))
         self.assertEqual((running.progress.fraction, running.progress.remaining), (1, 0))
+        self.assertAlmostEqual(running.progress.samples_per_pixel, image.statistics["spp"])
+        self.assertEqual(running.progress.elapsed, image.statistics["seconds_total"])
 
     def test_images_and_progress_until_it_is_cancelled(self):
         seen, told, several = [], [], threading.Event()
