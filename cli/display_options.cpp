@@ -8,9 +8,10 @@ namespace covtrace::cli {
 
 void add_display_options(CLI::App* c, DisplayArguments& a) {
     const auto parse = [&a](const std::string& text) {
-        // More would be black or white whatever the image.
-        constexpr float kMost = 60;
-        a.exposure = parse_number("--exposure", text, -kMost, kMost);
+        // The darkest one shows the largest numbers of single precision. Brighter than the other end
+        // all but a few images are white.
+        constexpr float kLeast = -130, kMost = 60;
+        a.exposure = parse_number("--exposure", text, kLeast, kMost);
     };
     c->add_option_function<std::string>("--exposure", parse, "brighten the PNG, not the EXR")
         ->option_text("STOPS");

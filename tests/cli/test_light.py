@@ -108,6 +108,12 @@ class Light(CliTest):
         for arguments, scene in (((*picture, "--exposure", str(stops)), bright), ((), bright), ((*picture, "--view", "agx"), bright),
                                  (picture, bright.replace("900 900 900", "90 90 90"))):
             self.assertEqual(self.seen(*arguments, scene=scene)[1], [], arguments)
+        # The option takes the exposure near the end of single precision, too.
+        brightest = bright.replace("900 900 900", "1e36 1e36 1e36")
+        told = [w for w in self.seen(*picture, scene=brightest)[1] if "--exposure" in w]
+        stops = re.search("--exposure (-[0-9]+)", told[0])[1]
+        self.assertLess(float(stops), -100)
+        self.assertFalse(any("--exposure" in w for w in self.seen(*picture, "--exposure", stops, scene=brightest)[1]))
 
     def test_a_dim_lamp_is_no_darkness(self):
         dim = ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [1e-5 1e-5 1e-5] "point3 from" [0 0 0] #')
