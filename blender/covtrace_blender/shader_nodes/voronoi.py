@@ -82,17 +82,20 @@ def smooth(p, jitter, metric, smoothness):
     found = None
     for offset in cells.offsets:
         away = cells.away(offset)
-        values = np.stack([*colours.at(offset), *away], axis=-1)
+        values = [*colours.at(offset), *away]
         distance = metric(away)
         if found is None:
-            found, nearest_so_far = values, distance
+            found, nearest_so_far = [np.array(value, np.float32) for value in values], distance
             continue
         share = np.clip(0.5 + 0.5 * (nearest_so_far - distance) / smoothness, 0, 1)
         share = share * share * (3 - 2 * share)
         less = smoothness * share * (1 - share)
         nearest_so_far = nearest_so_far + (distance - nearest_so_far) * share - less
-        found = found + (values - found) * share[:, None] - (less / (1 + 3 * smoothness))[:, None]
-    return nearest_so_far, found[:, :3], found[:, 3:] + np.asarray(p, np.float32)
+        less = less / (1 + 3 * smoothness)
+        for old, value in zip(found, values):  # in place: it runs for hundreds of cells
+            old += (value - old) * share
+            old -= less
+    return nearest_so_far, np.stack(found[:3], axis=-1), np.stack(found[3:], axis=-1) + np.asarray(p, np.float32)
 
 
 def sphere_radius(p, jitter):
