@@ -156,11 +156,14 @@ struct SubsurfaceBsdf {
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
 };
+struct GapSpectrum;
 /// A medium that scatters in the gap below a coat. See coated_walk.h.
 struct GapScattering {
     Rgb albedo{};     ///< share of the light that it keeps
     float g = 0;      ///< mean cosine of the phase function, in (-1, 1)
     int events = 10;  ///< most reflections and scatterings of a walk
+    /// Spectra to take in place of the albedo's channels; none: the channels.
+    const GapSpectrum* spectrum = nullptr;
     bool scatters() const { return max_component(albedo) > 0; }
 };
 /// A metal below a dielectric coat; two-sided. See coated_conductor.cpp.

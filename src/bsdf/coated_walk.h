@@ -13,6 +13,7 @@
 /// optical depths.
 #pragma once
 
+#include "bsdf/gap_spectrum.h"
 #include "bsdf/ggx.h"
 #include "bsdf/models.h"
 #include "bsdf/phase_function.h"
@@ -116,7 +117,8 @@ class CoatWalk {
           smooth_coat_(is_specular(layers.coat)),
           smooth_base_(layers.is_base_smooth()),
           first_(enter_coat(layers.coat, wo, rng.next_2d())),
-          last_(enter_coat(layers.coat, wi, rng.next_2d())) {}
+          last_(enter_coat(layers.coat, wi, rng.next_2d())),
+          colour_(layers.gap) {}
 
     /// Estimate of f without what the coat reflects.
     CoatWalkSum run() {
@@ -141,7 +143,9 @@ class CoatWalk {
     }
 
   private:
-    void add(Rgb value) { (is_scattered_ ? sum_.scattered : sum_.straight) += beta_ * value; }
+    void add(Rgb value) {
+        (is_scattered_ ? sum_.scattered : sum_.straight) += beta_ * colour_.value() * value;
+    }
     float passed(float depth, Vec3 w) const { return std::exp(-depth / std::abs(w.z)); }
 
     /// Adds light that leaves through a rough coat in the direction of the walk, which was sampled
@@ -176,7 +180,7 @@ class CoatWalk {
 
     void scatter() {
         is_scattered_ = true;
-        beta_ *= l_.gap.albedo;
+        colour_.scatter();
         if (last_) add_scattered(-last_->w);
         const Vec3 before = way_;
         way_ = sample_phase(l_.gap.g, -way_, rng_.next_2d());
@@ -185,6 +189,7 @@ class CoatWalk {
 
     bool meet_base() {
         const Vec3 from = -way_;
+        colour_.meet_base();
         if (last_ && !smooth_base_) {
             const Vec3 to = -last_->w;
             const float share =
@@ -215,7 +220,8 @@ class CoatWalk {
     const bool smooth_coat_, smooth_base_;
     const std::optional<CoatCrossing> first_, last_;
     Vec3 way_{};
-    Rgb beta_;
+    Rgb beta_;  ///< share of the light, but for colour_
+    GapColour colour_;
     float depth_ = 0;
     bool is_scattered_ = false;
     CoatWalkSum sum_;
@@ -234,16 +240,18 @@ template <typename Base>
 std::optional<CoatExit> follow_to_exit(const CoatLayers<Base>& l, Vec3 way, Rgb weight, Rng& rng) {
     float depth = 0;
     bool is_scattered = false;
+    GapColour colour(l.gap);
     for (int event = 0; event <= l.gap.events; ++event) {
         const GapEvent met = advance_in_gap(l.thickness, way, depth, rng.next_float());
         if (event == l.gap.events && met != GapEvent::coat) return {};
         switch (met) {
             case GapEvent::scattering:
                 is_scattered = true;
-                weight *= l.gap.albedo;
+                colour.scatter();
                 way = sample_phase(l.gap.g, -way, rng.next_2d());
                 break;
             case GapEvent::base: {
+                colour.meet_base();
                 const float u_lobe = rng.next_float();
                 const auto s = sample(l.base, -way, u_lobe, rng.next_2d());
                 if (!s) return {};
@@ -259,7 +267,7 @@ std::optional<CoatExit> follow_to_exit(const CoatLayers<Base>& l, Vec3 way, Rgb 
                 way = s->wi;
                 if (!is_transmission(s->lobe)) break;
                 if (!(way.z > 0)) return {};
-                return CoatExit{way, weight, is_scattered};
+                return CoatExit{way, weight * colour.value(), is_scattered};
             }
         }
     }

@@ -8,7 +8,9 @@ namespace covtrace {
 namespace {
 
 CoatLayers<DiffuseBsdf> layers(const HazyDiffuseBsdf& b) {
-    return {b.coat, b.base, b.thickness, b.gap};
+    static constexpr DiffuseBsdf kWhite{Rgb(1)};
+    const bool is_in_spectrum = b.gap.spectrum && b.gap.spectrum->has_base;
+    return {b.coat, is_in_spectrum ? kWhite : b.base, b.thickness, b.gap};
 }
 
 Rgb eval_coat(const HazyDiffuseBsdf& b, Vec3 wo, Vec3 wi) {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include "colour/colour_grid.h"
 #include "core/hash.h"
 #include "shading/material_bsdf.h"
 #include "shading/material_inputs.h"
@@ -97,6 +98,18 @@ void MaterialStore::prepare(const MeasuredMaterial& m, Material& material, const
     material.tables.measured = &measured_.try_emplace(m.brdf.get(), *m.brdf).first->second;
 }
 
+const GapSpectrum* MaterialStore::gap_spectrum(TextureId albedo, const TextureStore& textures,
+                                               const MaterialColour* base,
+                                               const IlluminantAdaptation& light) {
+    if (!textures.is_constant(albedo)) return nullptr;
+    const Rgb colour = clamp_to_unit(textures.eval(albedo, kMiddle));
+    const bool has_base = base && base->texture < 0;
+    if (is_grey(colour) && (!has_base || is_grey(clamp_to_unit(base->fixed)))) return nullptr;
+    GapSpectrum spectrum{ColourBands(light), band_values(colour), {}, has_base};
+    if (has_base) spectrum.base = band_values(base->fixed);
+    return gaps_.emplace_back(std::make_unique<const GapSpectrum>(spectrum)).get();
+}
+
 MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& textures,
                              const IlluminantAdaptation& adaptation) {
     materials_.reserve(scene.materials.size());
@@ -117,6 +130,13 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
                 material.colours.fixed_powers =
                     reflectance_powers(material.colours.reflectance.fixed, adaptation);
         }
+        if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value);
+            m && m->scatters_in_gap())
+            material.tables.gap =
+                gap_spectrum(m->albedo, textures, &material.colours.reflectance, adaptation);
+        if (const auto* m = std::get_if<CoatedConductorMaterial>(&description.value);
+            m && m->albedo >= 0)
+            material.tables.gap = gap_spectrum(m->albedo, textures, nullptr, adaptation);
         for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance})
             c->fixed = adaptation(c->fixed);
         const MaterialValues at_middle{textures, kMiddle, material.colours, adaptation_, powers_};

@@ -9,6 +9,7 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/coat_table.h"
 #include "bsdf/film_table.h"
+#include "bsdf/gap_spectrum.h"
 #include "bsdf/measured_brdf.h"
 #include "bsdf/sheen.h"
 #include "colour/illuminant_adaptation.h"
@@ -48,6 +49,7 @@ struct MaterialTables {
     const MeasuredBrdf* measured = nullptr;
     const SheenTable* sheen = nullptr;
     const CoatTable* clearcoat = nullptr;  ///< ClearcoatLobe::border
+    const GapSpectrum* gap = nullptr;      ///< GapScattering::spectrum
 };
 
 /// The textures that modulate the light that a material's lobes reflect and transmit; -1 where
@@ -129,6 +131,10 @@ class MaterialStore {
     void prepare(const MeasuredMaterial& m, Material& material, const TextureStore&);
     template <typename Other>
     void prepare(const Other&, Material&, const TextureStore&) {}
+    /// The spectra of a gap whose albedo does not vary, and of the reflectance below it, none where
+    /// that varies; null where channels tell as much: of greys.
+    const GapSpectrum* gap_spectrum(TextureId albedo, const TextureStore& textures,
+                                    const MaterialColour* base, const IlluminantAdaptation& light);
 
     std::vector<Material> materials_;
     AdaptationTable adaptation_;     ///< for textures that vary
@@ -137,6 +143,7 @@ class MaterialStore {
     FilmTables films_;
     std::map<const BrdfTensor*, MeasuredBrdf> measured_;  ///< by their tensors, which are shared
     std::unique_ptr<const SheenTable> sheen_;
+    std::vector<std::unique_ptr<const GapSpectrum>> gaps_;
     Warnings warnings_;
 };
 

@@ -84,13 +84,14 @@ float gap_thickness(const Material& m, const Values& v) {
 
 /// Medium in the gap of a coated model.
 template <typename Material>
-GapScattering gap_scattering(const Material& m, const Values& v, float thickness) {
+GapScattering gap_scattering(const Material& m, const Values& v, float thickness,
+                             const Tables& tables) {
     if (!(thickness > 0)) return {};
     constexpr float kMostForward = 0.99f;  // beyond it light goes straight on
     const float g = v.number(m.g, 0);
     return {share(v.spectrum(m.albedo, 0)),
             std::isfinite(g) ? std::clamp(g, -kMostForward, kMostForward) : 0.0f,
-            std::max(1, m.max_depth)};
+            std::max(1, m.max_depth), tables.gap};
 }
 
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables) {
@@ -99,7 +100,7 @@ Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables)
     if (m.scatters_in_gap()) {
         HazyDiffuseBsdf b;
         b.thickness = gap_thickness(m, v);
-        b.gap = gap_scattering(m, v, b.thickness);
+        b.gap = gap_scattering(m, v, b.thickness, tables);
         b.coat = {refractive_index(m.eta), alpha.x, alpha.y};
         b.base = {v.reflectance()};
         b.samples = std::max(1, m.samples);
@@ -167,7 +168,7 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables& table
     // its steps.
     b.bounces = std::max(1, (m.max_depth + 1) / 2);
     b.samples = std::max(1, m.samples);
-    b.gap = gap_scattering(m, v, b.thickness);
+    b.gap = gap_scattering(m, v, b.thickness, tables);
     return b;
 }
 

@@ -273,6 +273,35 @@ TEST_F(MaterialTest, WhatScattersInTheGapIsThatOfTheTextures) {
     EXPECT_FALSE(bsdf_at<CoatedConductorBsdf>(bare_id).gap.scatters());
 }
 
+TEST_F(MaterialTest, GapsKeepTheSpectraOfColoursThatDoNotVary) {
+    const TextureId orange = constant({0.9f, 0.5f, 0.2f}), grey = constant(0.5f);
+    const auto paint = [&](TextureId albedo, TextureId reflectance) {
+        CoatedDiffuseMaterial m;
+        m.albedo = albedo;
+        m.reflectance = reflectance;
+        return add(m);
+    };
+    CoatedConductorMaterial metal;
+    metal.albedo = orange;
+    const TextureId varying = checks(orange, grey);
+    const MaterialId coloured = paint(orange, grey), on_colour = paint(grey, orange),
+                     all_grey = paint(grey, grey), uneven = paint(varying, orange),
+                     on_uneven = paint(orange, varying), coated_metal = add(metal);
+    build();
+    const auto spectrum = [&](MaterialId id) { return bsdf_at<HazyDiffuseBsdf>(id).gap.spectrum; };
+    ASSERT_TRUE(spectrum(coloured) && spectrum(on_colour) && spectrum(on_uneven));
+    EXPECT_EQ(spectrum(coloured)->albedo, band_values({0.9f, 0.5f, 0.2f}));
+    EXPECT_EQ(spectrum(coloured)->base, band_values(Rgb(0.5f)));
+    EXPECT_EQ(spectrum(on_colour)->base, band_values({0.9f, 0.5f, 0.2f}));
+    EXPECT_TRUE(spectrum(on_colour)->has_base);
+    EXPECT_FALSE(spectrum(on_uneven)->has_base);
+    EXPECT_EQ(spectrum(all_grey), nullptr);
+    EXPECT_EQ(spectrum(uneven), nullptr);
+    const auto* under_metal = bsdf_at<CoatedConductorBsdf>(coated_metal).gap.spectrum;
+    ASSERT_TRUE(under_metal);
+    EXPECT_FALSE(under_metal->has_base);
+}
+
 TEST_F(MaterialTest, HairTakesTheFirstDescriptionOfItsPigment) {
     HairMaterial all, coloured, dyed, red;
     all.absorption = constant({0.5f, -1, NAN});
