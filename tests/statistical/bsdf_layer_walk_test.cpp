@@ -169,20 +169,28 @@ Rgb colour_of_spectra(const Histogram& light, Rgb albedo, Rgb reflectance) {
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
 }
 
-/// Largest difference of a channel of the light that leaves a BSDF, over the largest channel.
+/// Largest difference of a channel of the light that leaves a BSDF, by `sample` and by `eval`, over
+/// the largest channel.
 double colour_error(const Bsdf& bsdf, Vec3 wo, Rgb expected) {
     constexpr int kSamples = 100000;
     Rng rng(5);
-    std::array<double, 3> sum{};
+    std::array<double, 3> sampled{}, evaluated{};
     for (int i = 0; i < kSamples; ++i) {
         const float u_lobe = rng.next_float();
         const auto s = sample(bsdf, wo, u_lobe, rng.next_2d());
-        if (!s || is_specular(s->lobe)) continue;
-        for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(c)] += s->weight[c] / kSamples;
+        const Vec3 wi = square_to_cosine_hemisphere(rng.next_2d());
+        const Rgb weight = s && !is_specular(s->lobe) ? s->weight : Rgb(0);
+        const Rgb value = wi.z > 0 ? eval(bsdf, wo, wi) / cosine_hemisphere_pdf(wi.z) : Rgb(0);
+        for (int c = 0; c < 3; ++c) {
+            sampled[static_cast<size_t>(c)] += weight[c] / kSamples;
+            evaluated[static_cast<size_t>(c)] += value[c] / kSamples;
+        }
     }
     double largest = 0;
     for (int c = 0; c < 3; ++c)
-        largest = std::max(largest, std::abs(sum[static_cast<size_t>(c)] - double(expected[c])));
+        for (const auto& sum : {sampled, evaluated})
+            largest =
+                std::max(largest, std::abs(sum[static_cast<size_t>(c)] - double(expected[c])));
     return largest / max_component(expected);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bsdf/coat_table.h"
+#include "bsdf/gap_spectrum.h"
 #include "bsdf/hair.h"
 #include "bsdf/models.h"
 #include "bsdf/multiple_scattering.h"
@@ -82,6 +83,15 @@ inline CoatedConductorBsdf hazy_metal(float coat, float metal) {
 
 inline HazyDiffuseBsdf hazy_diffuse(float coat) {
     return {{1.5f, coat, coat}, {{0.7f, 0.5f, 0}}, 0.6f, 1, 0, {{0.9f, 0.6f, 0}, 0.4f, 10}};
+}
+
+/// The same with the spectra of its colours.
+inline HazyDiffuseBsdf banded_haze(float coat) {
+    HazyDiffuseBsdf b = hazy_diffuse(coat);
+    static const GapSpectrum spectrum{ColourBands(), band_values(b.gap.albedo),
+                                      band_values(b.base.reflectance), true};
+    b.gap.spectrum = &spectrum;
+    return b;
 }
 
 inline ThinDielectricBsdf filmed_pane(float alpha) {

@@ -68,6 +68,7 @@ std::vector<Case> all_cases() {
         {"frost_on_copper", coated_metal(0.1f, 0.3f, 0.05f, 0.4f)},
         {"haze_on_tan", hazy_diffuse(0)},
         {"frosted_haze_on_tan", hazy_diffuse(0.3f)},
+        {"banded_haze_on_tan", banded_haze(0.3f)},
         {"haze_on_mirror", hazy_metal(0, 0)},
         {"haze_on_copper", hazy_metal(0, 0.2f)},
         {"frosted_haze_on_mirror", hazy_metal(0.2f, 0)},
