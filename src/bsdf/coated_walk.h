@@ -106,6 +106,19 @@ inline GapEvent advance_in_gap(float thickness, Vec3 way, float& depth, float u)
     return way.z < 0 ? GapEvent::base : GapEvent::coat;
 }
 
+/// Ends walks that carry little light after some events, as pbrt-v4 does, and gives the others
+/// theirs. Returns whether a walk goes on. `carried`: its light, `weight`: a factor of it.
+inline bool survives_roulette(int event, Rgb carried, Rgb& weight, Rng& rng) {
+    constexpr int kSureEvents = 4;
+    constexpr float kLittle = 0.25f;
+    const float most = max_component(carried);
+    if (!(most > 0)) return false;
+    if (event < kSureEvents || most >= kLittle) return true;
+    if (rng.next_float() >= most) return false;
+    weight *= Rgb(1 / most);
+    return true;
+}
+
 /// A walk for a pair of directions, both outside (z > 0).
 template <typename Base>
 class CoatWalk {
@@ -138,6 +151,7 @@ class CoatWalk {
                     goes_on = meet_coat();
                     break;
             }
+            goes_on = goes_on && survives_roulette(event, beta_ * colour_.value(), beta_, rng_);
         }
         return sum_;
     }
@@ -270,6 +284,7 @@ std::optional<CoatExit> follow_to_exit(const CoatLayers<Base>& l, Vec3 way, Rgb 
                 return CoatExit{way, weight * colour.value(), is_scattered};
             }
         }
+        if (!survives_roulette(event, weight * colour.value(), weight, rng)) return {};
     }
     return {};
 }
