@@ -127,6 +127,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"furnace-interface", Where::everywhere, Rgb(1)},
                     Known{"material-thindielectric", Where::everywhere, Rgb(0.923077f)},
                     Known{"material-coat-coloured", Where::everywhere, kCoatedRed, 0.02},
+                    Known{"material-coat-gap-coloured", Where::everywhere,
+                          Rgb(0.4186f, 0.1861f, 0.1068f), 0.012},
                     Known{"material-mix-texture", Where::everywhere, Rgb(0.5f)},
                     Known{"material-conductor-spectrum", Where::everywhere,
                           Rgb(0.97f, 0.96f, 0.92f), 0.02},
