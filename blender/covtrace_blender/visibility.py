@@ -35,7 +35,7 @@ class Visibility:
             return None
         self._note_linking(obj)
         if obj.type == "LIGHT":
-            return hidden if self._is_lamp_lit(obj, hidden) else None
+            return self._lamp_hidden(obj, hidden) if self._is_lamp_lit(obj, hidden) else None
         if self._picture is None and is_catcher(instance):
             self._note("rendered as surfaces although they catch shadows", obj)
         return hidden
@@ -69,6 +69,13 @@ class Visibility:
         if getattr(of_cycles, "max_bounces", MOST_BOUNCES) < MOST_BOUNCES:
             self._note("lighting by more bounces than their own limit", obj)
         return True
+
+    @staticmethod
+    def _lamp_hidden(obj, hidden):
+        """No ray finds a lamp without Multiple Importance, which files of before Blender 2.8 have off: it is not seen in mirrors and
+        through glass, and is sampled by all that is rough. Hidden from glossy rays it would have no highlights, so it stays in mirrors."""
+        is_found = getattr(getattr(obj.data, "cycles", None), "use_multiple_importance_sampling", True)
+        return hidden if is_found or not has_extent(obj.data) else hidden | {"camera", "transmission"}
 
     def _note_linking(self, obj):
         linking = getattr(obj, "light_linking", None)  # from Blender 4.0 on

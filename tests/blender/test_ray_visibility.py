@@ -61,6 +61,17 @@ class RayVisibilityTest(CyclesTest):
         self.export()
         self.assertEqual(self.warnings, [])
 
+    def test_lamps_that_no_ray_finds_are_not_seen_through_glass(self):
+        """Multiple Importance is off in files of before Blender 2.8."""
+        self.room()
+        bpy.data.objects.remove(self.mirror)
+        self.thing("uv_sphere", self.shader("BsdfGlossy", "rough", Roughness=0.5), (1.3, 0.5, 0.6), radius=0.6)
+        lamp = self.lamp("POINT", energy=40, shadow_soft_size=0.3, location=(-1.2, 0.5, 1.4))
+        seen = max(self.assert_parts_as_cycles(samples_of_cycles=1500)["Combined.R"])
+        lamp.data.cycles.use_multiple_importance_sampling = False
+        lamp.data.update_tag()
+        self.assertLess(max(self.assert_parts_as_cycles(samples_of_cycles=1500)["Combined.R"]), seen / 4)
+
     # -- objects
 
     def test_objects_are_seen_by_their_rays(self):

@@ -234,7 +234,22 @@ class ShaderNodesTest(NodeTilesTest):
             angle = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(1), 1: 2.0})
             turned("AXIS_ANGLE", False, Axis=(0.2, 0.3, 1), Angle=angle)(tree)
 
-        self.assert_nodes({"axis": turned("AXIS_ANGLE", False, Axis=(0.2, 0.3, 1), Angle=0.7), "by a number": by_number,
+        def by_vectors(kind):
+            def show(tree):
+                angles = tree.node("VectorMath", {"operation": "MULTIPLY"}, {0: tree.uv(), 1: (1.1, 0.7, 0.9)})
+                if kind in ("angles", "inverted angles"):
+                    turned("EULER_XYZ", kind == "inverted angles", Rotation=angles)(tree)
+                else:
+                    mapping = tree.node("Mapping", {"vector_type": kind}, {
+                        "Vector": tree.uv(), **({"Location": (0.1, 0.2, 0)} if kind in ("POINT", "TEXTURE") else {}),
+                        "Rotation": angles, "Scale": (0.7, 0.8, 1.1)})
+                    half = tree.node("VectorMath", {"operation": "MULTIPLY"}, {0: mapping, 1: (0.5, 0.5, 0.5)})
+                    tree.show(tree.node("VectorMath", {"operation": "ABSOLUTE"}, {0: half}))
+            return show
+
+        self.assert_nodes({**{f"{kind} by vectors": by_vectors(kind) for kind in
+                              ("POINT", "TEXTURE", "VECTOR", "NORMAL", "angles", "inverted angles")},
+                           "axis": turned("AXIS_ANGLE", False, Axis=(0.2, 0.3, 1), Angle=0.7), "by a number": by_number,
                            "inverted": turned("Y_AXIS", True, Angle=0.7), "no axis": turned("AXIS_ANGLE", False, Axis=(0, 0, 0), Angle=0.7),
                            "angles": turned("EULER_XYZ", False, Rotation=(0.1, 0.2, 0.6)),
                            "inverted angles": turned("EULER_XYZ", True, Rotation=(0.1, 0.2, 0.6))})

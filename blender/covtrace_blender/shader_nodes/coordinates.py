@@ -1,7 +1,5 @@
 """Texture coordinates and their mapping."""
 
-import math
-
 import numpy as np
 
 from .place import RANDOMS, STRANDS
@@ -56,38 +54,40 @@ def _wireframe(node, output, inputs):
 
 
 def rotation(euler):
-    """(3, 3) of Euler angles x, y, z in radian, x first."""
-    (sx, sy, sz), (cx, cy, cz) = (tuple(f(float(a)) for a in euler) for f in (math.sin, math.cos))
-    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
-    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
-    about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
-    return (about_z @ about_y @ about_x).astype(np.float32)
+    """(..., 3, 3) of Euler angles x, y, z in radian, x first: (..., 3)."""
+    x, y, z = np.moveaxis(np.asarray(euler, float), -1, 0)
+    (sx, cx), (sy, cy), (sz, cz) = ((np.sin(a), np.cos(a)) for a in (x, y, z))
+    rows = [[cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx],
+            [sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx],
+            [-sy, cy * sx, cy * cx]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2).astype(np.float32)
+
+
+def _turned(vector, turn, back=False):
+    """A vector, or one for each place, turned by a matrix, or one for each place; or turned back."""
+    if turn.ndim == 2:
+        return vector @ (turn if back else turn.T)
+    return np.einsum("...ji,...j->...i" if back else "...ij,...j->...i", turn, vector)
 
 
 def _mapping(node, output, inputs):
     vector, scale, angles = (inputs.vector(name) for name in ("Vector", "Scale", "Rotation"))
-    if angles.ndim > 1:
-        raise Unsupported(node, "its rotation is not the same everywhere")
     turn = rotation(angles)
     if node.vector_type == "POINT":
-        return (vector * scale) @ turn.T + inputs.vector("Location")
+        return _turned(vector * scale, turn) + inputs.vector("Location")
     if node.vector_type == "TEXTURE":
-        turned = (vector - inputs.vector("Location")) @ turn
+        turned = _turned(vector - inputs.vector("Location"), turn, back=True)
         return np.where(scale != 0, turned / np.where(scale != 0, scale, 1), 0)
     if node.vector_type == "VECTOR":
-        return (vector * scale) @ turn.T
-    normal = np.where(scale != 0, vector / np.where(scale != 0, scale, 1), 0) @ turn.T
+        return _turned(vector * scale, turn)
+    normal = _turned(np.where(scale != 0, vector / np.where(scale != 0, scale, 1), 0), turn)
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
 
 
 def _vector_rotate(node, output, inputs):
     vector, centre = inputs.vector("Vector"), inputs.vector("Center")
     if node.rotation_type == "EULER_XYZ":
-        angles = inputs.vector("Rotation")
-        if angles.ndim > 1:
-            raise Unsupported(node, "its rotation is not the same everywhere")
-        turn = rotation(angles)
-        return (vector - centre) @ (turn if node.invert else turn.T) + centre
+        return _turned(vector - centre, rotation(inputs.vector("Rotation")), back=node.invert) + centre
     axes = {"X_AXIS": (1, 0, 0), "Y_AXIS": (0, 1, 0), "Z_AXIS": (0, 0, 1)}
     axis = np.array(axes[node.rotation_type], np.float32) if node.rotation_type in axes else inputs.vector("Axis")
     length = np.linalg.norm(axis, axis=-1, keepdims=True)
