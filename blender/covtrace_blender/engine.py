@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 from . import export_scene, layers, settings, shadow_catchers, viewport
+from .warnings_together import together
 
 # Passes beside the image: (name as covtrace's Blender layer names have it, channels, their names, type).
 PASSES = (
@@ -143,10 +144,10 @@ class CovtraceEngine(bpy.types.RenderEngine):
             missing = passes_without_counterpart(layer)
             if missing:
                 exporter.warn(f"passes that have no counterpart: {', '.join(missing)}")
-            for text in exporter.warnings:
+            for text in together(exporter.warnings):
                 if text not in told:
                     self.report({"WARNING"}, text)
-            told += exporter.warnings
+                    told.append(text)
             image = os.path.join(own_folder, "image.exr")
             code = self._run(self._command(program, file, image, scene.covtrace, layer, scene.covtrace.seconds * self._share))
             if os.path.exists(image):

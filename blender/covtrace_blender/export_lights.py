@@ -3,11 +3,12 @@
 import math
 
 import bpy
+import mathutils
 import numpy as np
 
 from .export_shaders import numbers
 from .lamp_emission import LampEmission
-from .placement import placement
+from .placement import placement, with_extent
 from .visibility import has_extent, hidden_from
 
 
@@ -16,6 +17,18 @@ MAY_MOVE = ("POINT", "AREA")
 # Radians. Wider spreads of area lamps take nothing from their light; narrower ones are a beam, which no sampling of places finds.
 MOST_SPREAD, LEAST_SPREAD = math.radians(179.9), math.radians(1)
 LEAST_MOVING_RADIUS = 1e-3  # of points that move: there is no other light without extent that does
+
+
+def lit_matrix(lamp):
+    """The function that gives a matrix of the lamp's object with an extent along all axes, or None where it does not shine: as in
+    Cycles points shine on objects of any scale, and others along the z axis, if there is one."""
+    def of_point(matrix):
+        return with_extent(matrix) or mathutils.Matrix.Translation(matrix.translation)
+
+    def of_others(matrix):
+        return with_extent(matrix) if all(matrix.col[axis].xyz.length > 0 for axis in ((0, 1, 2) if lamp.type == "AREA" else (2,))) else None
+
+    return of_point if lamp.type == "POINT" else of_others
 
 
 def write_lamp(out, lamp, matrix, end, hidden, images, warn):

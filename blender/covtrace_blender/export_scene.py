@@ -22,7 +22,7 @@ from .node_signature import hangs_on_world
 from .owner import Owner, asks_for_random, random_of
 from .part import Part, write_parts
 from .photometric_images import PhotometricImages
-from .placement import is_same, placement
+from .placement import is_same, placement, with_extent
 from .shader_nodes.place import STRANDS
 from .shadow_catchers import BARE, BEHIND, CAUGHT
 from .solid import Box, Solid
@@ -166,16 +166,17 @@ class SceneExporter(Instances):
             hidden = self.visibility.hidden(instance)
             if hidden is None:
                 continue
-            matrix = self.still.get(key) or instance.matrix_world.copy()
-            end = None if key in self.still else moving.get(key)
+            matrix, end = self.still.get(key) or instance.matrix_world.copy(), None if key in self.still else moving.get(key)
+            fit = export_lights.lit_matrix(obj.data) if obj.type == "LIGHT" else with_extent
+            matrix, end = fit(matrix), end and fit(end)
+            if matrix is None:
+                continue
             if obj.type == "LIGHT" and instance.show_self:
                 self._write_lamp(obj, matrix, end, hidden)
             elif obj.type in WRITTEN:
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
                 self.random = self._random_of(instance)
                 shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles, self.random)
-                if abs(matrix.determinant()) < 1e-30:
-                    continue
                 if shown not in exported:
                     is_shown = instance.show_self and (self.layer.use_solid or obj.type == "VOLUME")
                     exported[shown] = (self._export_parts(obj) if is_shown else []) + (

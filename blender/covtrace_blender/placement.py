@@ -1,6 +1,26 @@
 """Transforms of Blender as text of pbrt."""
 
+import numpy as np
+
 from .export_shaders import numbers
+
+LEAST_DETERMINANT = 1e-30
+FLATTEST = 1e-7  # the extent that is given to what has none along one axis, of its largest
+
+
+def with_extent(matrix):
+    """An object's matrix, with hardly any extent along an axis where it has none, as for a floor scaled by 0 along its normal, so that
+    it can be inverted as in Cycles; None where it leaves no area."""
+    if abs(matrix.determinant()) >= LEAST_DETERMINANT:
+        return matrix
+    u, extents, v = np.linalg.svd(np.array(matrix, float)[:3, :3])
+    if extents[1] <= FLATTEST * extents[0]:
+        return None
+    flat = u @ np.diag([*extents[:2], extents[0] * FLATTEST * np.sign(np.linalg.det(u) * np.linalg.det(v))]) @ v
+    found = matrix.copy()
+    for row in range(3):
+        found[row][:3] = flat[row]
+    return found
 
 
 def matrix_text(matrix):

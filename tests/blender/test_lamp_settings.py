@@ -35,6 +35,12 @@ class LampSettingsTest(CyclesTest):
         for shape in ("SQUARE", "ELLIPSE"):
             self.assert_as_cycles_with("AREA", energy=20, normalize=False, shape=shape, size=1, size_y=2, scale=(1.5, 0.5, 1))
 
+    def test_lamps_of_flat_objects(self):
+        self.assert_as_cycles_with("POINT", energy=100, shadow_soft_size=0.2, scale=(1, 1, 0))
+        self.assert_as_cycles_with("POINT", energy=100, shadow_soft_size=0, scale=(0, 0, 0))
+        self.assert_as_cycles_with("SUN", energy=3, scale=(0, 1, 1), turn=(0.3, 0.2, 0))
+        self.assert_as_cycles_with("AREA", energy=30, size=1, scale=(1, 1, 0), turn=(0.3, 0.2, 0))  # dark
+
     def test_spreads_of_area_lamps(self):
         for degrees in (150, 90, 45):
             self.assert_as_cycles_with("AREA", 0.04, energy=30, shape="RECTANGLE", size=1, size_y=2, spread=math.radians(degrees),

@@ -59,6 +59,16 @@ class ObjectsTest(BlenderTest):
         self.assertEqual(self.export().count("ObjectInstance"), 2)
         self.assert_silhouettes_as_cycles()
 
+    def test_what_is_scaled_flat_is_there(self):
+        """A matrix without an inverse, as of a floor that is scaled by 0 along its normal; two zeros leave a line."""
+        for location, scale in (((-1, 0.5, 0), (1, 0.6, 0)), ((1, 0.5, 0), (0.9, 0.6, 0)), ((0, -0.8, 0), (1, 0, 0)), ((0, 1, 0), (0, 0, 0))):
+            bpy.ops.mesh.primitive_uv_sphere_add(radius=0.7, location=location, scale=scale, rotation=(0.4, 0.3, 0.2))
+            bpy.context.object.scale = scale  # the operator itself takes no zero
+            bpy.context.object.data.materials.append(self.black())
+        bpy.context.view_layer.update()
+        self.assertEqual(self.export().count('Shape "plymesh"'), 2)
+        self.assert_silhouettes_as_cycles()
+
     def test_geometry_nodes_and_modifiers_are_evaluated(self):
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=2.4)
         grid = bpy.context.object
