@@ -18,6 +18,7 @@ from .export_volumes import medium_of
 from .media import Media
 from .node_signature import all_nodes, tree_of
 from .owner import Owner, asked_of_owner
+from .shader_nodes import surroundings
 from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS, groups_of_rays
 from .shader_nodes.unsupported import NeedsBody, Unsupported
@@ -110,6 +111,9 @@ class MaterialExporter(SumExporter):
         nodes = list(all_nodes(material.node_tree))
         if any(node.type == "NEW_GEOMETRY" and node.outputs["Backfacing"].is_linked for node in nodes):
             self.warn(f"material '{self.name}': surfaces look from behind as from their front; Backfacing is 0")
+        for kind, text in surroundings.TOLD.items():
+            if any(node.type == kind and any(output.is_linked for output in node.outputs) for node in nodes):
+                self.warn(f"material '{self.name}': {text}")
         self.baker.owner = None
         asked = asked_of_owner(nodes)
         if asked:

@@ -21,7 +21,7 @@ def tree_of(thing):
 
 def hangs_on_world(tree):
     """Whether nodes ask for places in the world, not on the object alone."""
-    return any(node.type in ("NEW_GEOMETRY", "CAMERA", "WIREFRAME") or node.type == "TEX_COORD" and node.object for node in all_nodes(tree))
+    return any(node.type in ("NEW_GEOMETRY", "CAMERA", "WIREFRAME", "BEVEL") or node.type == "TEX_COORD" and node.object for node in all_nodes(tree))
 
 
 # Properties of nodes that change no picture.

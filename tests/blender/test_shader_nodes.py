@@ -221,6 +221,23 @@ class ShaderNodesTest(NodeTilesTest):
                                                               *(("ROUND",) if bpy.app.version >= (5, 1, 0) else ()))},
                            **{f"mapping {kind}": placed(kind) for kind in ("TEXTURE", "NORMAL")}})
 
+    def test_nodes_that_look_around_see_nothing_near(self):
+        """On planes in the open that is so; without them what hangs on these nodes had the socket's own value."""
+        def occluded(output):
+            def show(tree):
+                node = tree.node("AmbientOcclusion", inputs={"Color": tree.colours()})
+                share = tree.node("Math", {"operation": "MULTIPLY"}, {0: (node, output), 1: tree.number()})
+                tree.show(share if output == "AO" else node)
+            return show
+
+        def bevelled(tree):
+            away = tree.node("VectorMath", {"operation": "ADD"}, {0: tree.node("Bevel", {"samples": 4}, {"Radius": 0.01}), 1: tree.colours()})
+            tree.show(tree.node("VectorMath", {"operation": "MULTIPLY"}, {0: away, 1: (0.5, 0.5, 0.5)}))
+
+        self.assert_nodes({"AO": occluded("AO"), "colour": occluded("Color"), "bevel": bevelled}, warnings=[
+            *(f"material '{name}': Ambient Occlusion is 1, as if nothing were near" for name in ("AO", "colour")),
+            "material 'bevel': the Normal of Bevel is the surface's own"])
+
     def test_turned_vectors(self):
         def turned(kind, invert, **inputs):
             def show(tree):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..working_space import luminance
 from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, musgrave, noise_nodes, patterns, ramps
-from . import sight, voronoi_node
+from . import sight, surroundings, voronoi_node
 from .unsupported import Unsupported
 
 
@@ -15,7 +15,7 @@ def _conversion(node, output, inputs):
 # Values by the type of the node: function(node, output, Inputs) to a number or a vector, as the output's type is.
 NODES = {**adjustments.NODES, **blending.NODES, **colours.NODES, **coordinates.NODES, **gradients.NODES, **images.NODES,
          **light_path.NODES, **maths.NODES, **musgrave.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES, **sight.NODES,
-         **voronoi_node.NODES, "CONVERSION": _conversion}
+         **surroundings.NODES, **voronoi_node.NODES, "CONVERSION": _conversion}
 
 
 class Inputs:
