@@ -2,12 +2,13 @@
 
     python bench/blender/render_file.py FILE.blend STEM WIDTH SAMPLES CYCLES_SAMPLES
 
-Writes STEM.json (means of the channels, seconds, warnings) and STEM.png: covtrace's picture on the left, Cycles' on the right,
-both by the file's own view transform. Cycles denoises and has the bounces of the file; where any mean differs by more than 5 %,
+Writes STEM.json (means of the channels, seconds, warnings, the share of faces that lie on others) and STEM.png: covtrace's
+picture on the left, Cycles' on the right, both by the file's own view transform. Cycles denoises and has the bounces of the file; where any mean differs by more than 5 %,
 it renders once more with as many bounces as covtrace, without its clamps and its filter of glossy light, which take light away.
 Scripts in the file are not run.
 """
 
+import collections
 import json
 import os
 import pathlib
@@ -79,6 +80,16 @@ def recorded(found):
     export_scene.SceneExporter.write = timed
 
 
+def doubled_share(depsgraph):
+    """The share of the faces of all meshes whose middle is that of another one. Cycles lets such faces shade each other."""
+    found = collections.Counter()
+    for instance in depsgraph.object_instances:
+        if instance.object.type == "MESH":
+            matrix = instance.matrix_world
+            found.update(tuple(round(v, 3) for v in matrix @ polygon.center) for polygon in instance.object.data.polygons)
+    return sum(n for n in found.values() if n > 1) / max(sum(found.values()), 1)
+
+
 def by_cycles(scene, samples, folder):
     cycles = scene.cycles
     cycles.device, cycles.samples, cycles.time_limit = "CPU", samples, MOST_SECONDS
@@ -123,6 +134,7 @@ def main(file, stem, width, samples, cycles_samples):
         if scene.camera is None:
             raise RuntimeError("the file has no camera")
         scene.covtrace.samples, scene.covtrace.seconds = int(samples), MOST_SECONDS
+        found["doubled"] = doubled_share(bpy.context.evaluated_depsgraph_get())
         with tempfile.TemporaryDirectory() as folder:
             theirs, right, found["cycles seconds"] = by_cycles(scene, int(cycles_samples), folder)
             ours, left, found["covtrace seconds"] = picture(scene, "COVTRACE", folder)
