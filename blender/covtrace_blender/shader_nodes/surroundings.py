@@ -2,7 +2,7 @@
 
 import numpy as np
 
-# What is told of a material with one of these nodes, by the type of the node.
+# The warning about a material with one of these nodes, by the type of the node.
 TOLD = {"AMBIENT_OCCLUSION": "Ambient Occlusion is 1, as if nothing were near",
         "BEVEL": "the Normal of Bevel is the surface's own"}
 
