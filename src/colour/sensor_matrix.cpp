@@ -1,5 +1,6 @@
 #include "colour/sensor_matrix.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "colour/chart_reflectances.h"
@@ -136,6 +137,41 @@ SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin) {
     for (Triple& row : values)
         for (double& v : row) v *= kObserverStep / eye.luminance_of_d65();
     return {single_precision(whole.solve()), single_precision(values)};
+}
+
+SensorLight::SensorLight(const SensorCurves& sensor, const SensorMatrices& matrices) {
+    const Eye eye(sensor);
+    const auto rows = [](const std::array<std::array<float, 3>, 3>& m) {
+        Matrix3 r{};
+        for (size_t i = 0; i < 3; ++i)
+            for (size_t j = 0; j < 3; ++j) r[i][j] = double(m[i][j]);
+        return r;
+    };
+    const Matrix3 from_values = inverse(product(rows(matrices.values), rows(matrices.shown)));
+    const double unit = kObserverStep / eye.luminance_of_d65();
+    const Samples everywhere(eye.d65().size(), 1);
+    for (size_t i = 0; i < everywhere.size(); ++i) {
+        Samples line(everywhere.size(), 0);
+        line[i] = 1;
+        Triple values = eye.response(line, everywhere);
+        for (double& v : values) v *= unit;
+        colour_.push_back(product(from_values, values));
+        luminance_.push_back(luminance_of(eye.colour(line, everywhere)));
+    }
+}
+
+Rgb SensorLight::blackbody_colour(double kelvin) const {
+    const Samples light = sampled([s = blackbody_spectrum(kelvin)](double l) { return s.at(l); });
+    Triple colour{};
+    double luminance = 0;
+    for (size_t i = 0; i < light.size(); ++i) {
+        for (size_t c = 0; c < 3; ++c) colour[c] += colour_[i][c] * light[i];
+        luminance += luminance_[i] * light[i];
+    }
+    Rgb result;
+    for (int c = 0; c < 3; ++c)
+        result[c] = static_cast<float>(std::max(0.0, colour[static_cast<size_t>(c)] / luminance));
+    return result;
 }
 
 }  // namespace covtrace

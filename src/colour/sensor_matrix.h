@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
+#include "colour/matrix3.h"
 #include "colour/sensor_curves.h"
+#include "core/vec.h"
 
 namespace covtrace {
 
@@ -28,5 +31,23 @@ struct SensorMatrices {
 /// far single colours are from the spectral result is in
 /// docs/decisions/0100-sensors-as-matrices.md.
 SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin);
+
+/// Colours of black bodies for images that a sensor shows. To the standard observer's colours a
+/// matrix can't be exact: a fire's blue, small beside its red, was 6 % too dark. With the colours
+/// from here the sensor shows light itself as pbrt-v4 shows its spectrum.
+class SensorLight {
+  public:
+    SensorLight(const SensorCurves& sensor, const SensorMatrices& matrices);
+    /// The colour, linear Rec.709 before `shown`, of light of luminance 1 from a black body at a
+    /// temperature (kelvin, > 0), as emission_colour(blackbody_spectrum(kelvin)) is for the
+    /// standard observer; negative components are set to 0.
+    Rgb blackbody_colour(double kelvin) const;
+
+  private:
+    /// By the wavelengths of observer_samples(): what light there adds to the colour, and to the
+    /// luminance.
+    std::vector<Triple> colour_;
+    std::vector<double> luminance_;
+};
 
 }  // namespace covtrace

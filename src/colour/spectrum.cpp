@@ -212,14 +212,14 @@ Spectrum blackbody_spectrum(double kelvin) {
     return s;
 }
 
-Rgb blackbody_radiance(double kelvin) {
+float blackbody_luminance(double kelvin) {
     constexpr double kWien = 2.897771955e6;  // nm K
     const double largest = log_planck(kWien / kelvin, kelvin);
     const auto light = [](double l) { return response().at(l); };
     const auto relative = [&](double l) { return std::exp(log_planck(l, kelvin) - largest); };
     const double y = kLuminanceOfOne * luminance_of(integral(pieces({}), light, relative)) /
                      luminance_of(integral(pieces({}), light, one));
-    return emission_colour(blackbody_spectrum(kelvin)) * static_cast<float>(y);
+    return static_cast<float>(y);
 }
 
 Rgb reflectance_colour(const Spectrum& s) {

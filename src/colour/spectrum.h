@@ -42,11 +42,11 @@ std::span<const ObserverSample> observer_samples();
 /// value 1.
 Spectrum blackbody_spectrum(double kelvin);
 
-/// Colour and brightness of a black body at this temperature (kelvin, > 0) whose spectral radiance
-/// is 1 where it is largest, at any wavelength. Light of 1 at all wavelengths has the luminance
-/// 106.856895, the integral of CIE's y over wavelengths in nanometres: pbrt divides by it in lights
-/// and in "Le", and not where media glow by their temperature.
-Rgb blackbody_radiance(double kelvin);
+/// Luminance of a black body at this temperature (kelvin, > 0) whose spectral radiance is 1 where
+/// it is largest, at any wavelength. Light of 1 at all wavelengths has the luminance 106.856895,
+/// the integral of CIE's y over wavelengths in nanometres: pbrt divides by it in lights and in
+/// "Le", and not where media glow by their temperature.
+float blackbody_luminance(double kelvin);
 
 /// Colour of a surface with this reflectance (or of any other factor) under D65.
 Rgb reflectance_colour(const Spectrum& s);

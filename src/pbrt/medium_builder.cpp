@@ -163,8 +163,9 @@ Glow thermal_glow(std::shared_ptr<const DensityGrid> temperature, float offset, 
     for (int i = 0; i < kTemperatures; ++i) {
         const float kelvin = (float(i) * step - offset) * scale;
         if (kelvin > kDark && std::isfinite(kelvin))
-            glow.radiance[size_t(i)] =
-                scaled_light(blackbody_radiance(double(kelvin)), factor, e.where, context);
+            glow.radiance[size_t(i)] = scaled_light(
+                blackbody_colour(double(kelvin), context) * blackbody_luminance(double(kelvin)),
+                factor, e.where, context);
     }
     return glow;
 }

@@ -100,6 +100,11 @@ Rgb factor_colour(const Parameter& p, BuildContext& context) {
     return {std::max(0.0f, c.r), std::max(0.0f, c.g), std::max(0.0f, c.b)};
 }
 
+Rgb blackbody_colour(double kelvin, const BuildContext& context) {
+    return context.sensor ? context.sensor->blackbody_colour(kelvin)
+                          : emission_colour(blackbody_spectrum(kelvin));
+}
+
 Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context) {
     const Parameter* p = parameters.find(
         name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
@@ -107,7 +112,9 @@ Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext&
     if (p->type == ParameterType::rgb) return rgb_value(*p);
     const std::optional<Spectrum> s = spectrum_value(*p, context);
     if (!s) return *illuminant_colour(p->strings[0]);
-    const Rgb c = emission_colour(*s);
+    const Rgb c = p->type == ParameterType::blackbody
+                      ? blackbody_colour(double(p->numbers[0]), context)
+                      : emission_colour(*s);
     if (is_black(c) &&
         std::any_of(s->values.begin(), s->values.end(), [](float v) { return v > 0; }))
         context.log.add(p->where, "the spectrum " + in_quotes(p->name) +

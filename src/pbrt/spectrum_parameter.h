@@ -20,6 +20,9 @@ std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context
 /// The colour of a reflectance or a coefficient; `p` is of type rgb, spectrum or blackbody.
 Rgb factor_colour(const Parameter& p, BuildContext& context);
 
+/// The colour of light of luminance 1 from a black body at a temperature (kelvin, > 0), for the
+/// film's sensor.
+Rgb blackbody_colour(double kelvin, const BuildContext& context);
 /// The colour of a light: rgb as it is, anything else at luminance 1 (pbrt's photometric
 /// normalisation); white where the parameter is missing.
 Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context);

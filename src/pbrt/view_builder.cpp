@@ -150,7 +150,8 @@ FilmDescription::Surfaces gbuffer_space(Entity& e) {
              unknown_name("coordinate system of a gbuffer film", space, {"camera", "world"}));
 }
 
-void set_sensor(Entity& e, FilmDescription& film) {
+void set_sensor(Entity& e, BuildContext& context) {
+    FilmDescription& film = context.scene.film;
     ParameterList& p = e.parameters;
     const float balance = p.number("whitebalance", 0);
     if (balance < 0) e.refuse("whitebalance", "parameter \"whitebalance\" must not be negative");
@@ -160,6 +161,7 @@ void set_sensor(Entity& e, FilmDescription& film) {
         const SensorMatrices matrices = sensor_matrices(*sensor, balance > 0 ? balance : 6500);
         film.sensor = matrices.shown;
         film.sensor_values = matrices.values;
+        context.sensor.emplace(*sensor, matrices);
     } else if (balance > 0) {
         film.sensor = white_balance(balance);
         film.sensor_values = xyz_before_balance(balance);
@@ -193,7 +195,7 @@ void build_film(ViewEntities& view, BuildContext& context) {
     film.iso = e.positive("iso", 100);
     film.max_component_value = e.positive("maxcomponentvalue", kInfinity);
     set_crop(e, film, context.log);
-    set_sensor(e, film);
+    set_sensor(e, context);
     if (view.film_colour_space != ColourSpace::srgb)
         context.log.add(e.where,
                         "the image is written in linear Rec.709, not in the film's colour space");

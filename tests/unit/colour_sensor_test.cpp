@@ -134,13 +134,29 @@ TEST(Sensor, ValuesAreTheIntegralsOfItsCurves) {
 }
 
 TEST(Sensor, FireIsNearThatOfSpectra) {
-    // Black bodies of 1500 and 2500 K, by pbrt-v4's formulas. The first one's blue is below 0.
-    const auto m = sensor_matrices(*find_sensor("nikon_d850"), 6000).shown;
-    for (const Shown& fire : {Shown{{3.264f, 0.4342f, 0}, {3.2776f, 0.484f, 0.0328f}},
-                              Shown{{2.0676f, 0.7694f, 0.1396f}, {2.0195f, 0.7918f, 0.2036f}}}) {
-        const Rgb got = shown(m, fire.seen);
-        EXPECT_LT(largest_difference(got, fire.through), 0.025f * max_component(fire.through))
+    // Black bodies of 1500 and 2500 K, by pbrt-v4's formulas. The blue of the first one is below 0,
+    // for the sensor as for the standard observer.
+    struct Fire {
+        double kelvin;
+        Shown shown;
+        float within;
+    };
+    const SensorCurves& sensor = *find_sensor("nikon_d850");
+    const SensorMatrices matrices = sensor_matrices(sensor, 6000);
+    const SensorLight light(sensor, matrices);
+    for (const Fire& fire :
+         {Fire{1500, {{3.264f, 0.4342f, 0}, {3.2776f, 0.484f, 0.0328f}}, 0.013f},
+          Fire{2500, {{2.0676f, 0.7694f, 0.1396f}, {2.0195f, 0.7918f, 0.2036f}}, 0.001f}}) {
+        const Rgb through = fire.shown.through, got = shown(matrices.shown, fire.shown.seen);
+        EXPECT_LT(largest_difference(got, through), 0.025f * max_component(through))
             << got.r << " " << got.g << " " << got.b;
+        // Light itself, given for the sensor, is exact, where no component is below 0
+        const Rgb of_light = shown(matrices.shown, light.blackbody_colour(fire.kelvin));
+        EXPECT_LT(largest_difference(of_light, through), fire.within * max_component(through))
+            << of_light.r << " " << of_light.g << " " << of_light.b;
+        if (fire.kelvin > 2000) {
+            EXPECT_NEAR(of_light.b, through.b, 0.005f * through.b);
+        }
     }
 }
 
