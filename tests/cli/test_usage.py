@@ -77,7 +77,7 @@ class WrongCommandLines(CliTest):
         bad = {
             "--spp": ["0", "-1", "many", "nan", "inf", "1e300", ""],
             "--time": ["garbage", "0", "-3", "5x", "3m5", "1h30", "1m-3s", "s", "nan", "inf", "1e400", "m", ""],
-            "--method": ["magic", "Uniform", "0"],
+            "--method": ["magic", "Uniforme", "0"],
             "--cov-spp": ["0", "-2", "x", "1.5", "2 ", "9999999999999999999", ""],
             "--error": ["0", "-1", "x", "nan"],
             "--max-spp": ["0", "x", "0x10", "1e3", "1073741825"],
