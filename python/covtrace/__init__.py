@@ -27,6 +27,8 @@ except ModuleNotFoundError as missing:
     raise ImportError(f"covtrace: {missing}; this is {_sys.executable}, the package was built for "
                       f"another Python ({_built}), on Debian /usr/bin/python3") from missing
 
+from typing import NoReturn as _NoReturn
+
 from . import covariance
 from .builder import SceneBuilder
 from .denoising import denoise
@@ -38,6 +40,21 @@ from .progress import Progress
 from .rendering import render
 from .running import RunningRender, start
 from .scene import Scene
+
+_SCENE = "covtrace.Scene(file) reads a scene"
+_IMAGE = "covtrace.Image.read(file) reads an image"
+_OTHER_NAMES = {**dict.fromkeys(("load", "open", "read"), f"{_SCENE}, {_IMAGE}"),
+                **dict.fromkeys(("load_scene", "read_scene", "load_file", "load_gltf", "load_pbrt"), _SCENE),
+                **dict.fromkeys(("load_image", "read_image", "imread"), _IMAGE),
+                **dict.fromkeys(("render_file", "trace"), "covtrace.render(file) renders a scene"),
+                **dict.fromkeys(("save", "write", "imwrite", "save_image", "write_image"), "image.write('picture.png') writes an image"),
+                "version": "covtrace.__version__ is it"}
+
+
+def __getattr__(name: str) -> _NoReturn:
+    meant = _OTHER_NAMES.get(name, "")
+    raise AttributeError(f"module 'covtrace' has no attribute {name!r}{meant and '; '}{meant}")
+
 
 __all__ = ["Comparison", "Error", "FileError", "Image", "InternalError", "Interrupted",
            "LimitError", "Progress", "RunningRender", "Scene", "SceneBuilder", "SceneError", "SceneWarning",

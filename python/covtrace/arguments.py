@@ -25,7 +25,7 @@ def refuse(name: str, value: Any, expected: str) -> NoReturn:
 # Names in other renderers, and in the program's options, of the arguments of `render`, or what does their work.
 _SHOWN = "write the picture by image.write('picture.png', exposure=1, view='agx')"
 _FRAMES = "render each frame with its own shutter=(begin, end)"
-_OTHER_NAMES = {"samples": "spp", "num_samples": "spp", "spp_max": "max_spp", "size": "resolution", "width": "resolution",
+_OTHER_NAMES = {"samples": "spp", "res": "resolution", "num_samples": "spp", "spp_max": "max_spp", "size": "resolution", "width": "resolution",
                 "height": "resolution", "depth": "max_depth", "bounces": "max_depth", "max_bounces": "max_depth",
                 "denoise": "denoiser", "lights": "light", "lamp": "light", "world": "environment", "background": "environment",
                 "hdri": "environment", "envmap": "environment", "eye": "camera", "target": "camera", "fov": "camera",
@@ -243,8 +243,10 @@ def camera_of(value: Any) -> dict[str, Any] | None:
         text, value = value, _camera_in(value)
         if value is None:
             refuse("camera", text, "a view such as 'eye 0,1,6 target 0,0,0 fov 40'")
-    if not isinstance(value, Mapping) or not {"eye", "target", "fov"} <= set(value) <= {"eye", "target", "fov", "up"}:
+    if not isinstance(value, Mapping) or not value.keys() <= {"eye", "target", "fov", "up"}:
         refuse("camera", value, expected)
+    if missing := [name for name in ("eye", "target", "fov") if name not in value]:
+        refuse("camera", value, f"{' and '.join(map(repr, missing))}, too: {expected}")
     camera: dict[str, Any] = {"up": None}
     for name, part in value.items():
         if name == "fov":
@@ -262,7 +264,7 @@ _LAMP = ("'camera' or '0,2.5,1', with 'power 40', 'radius 0.1' or 'colour 1,0.9,
 
 def _lamp_in(text: str) -> tuple[Any, float, tuple[float, float, float], float | None]:
     """Place or None for the camera's, radius, colour and power or None, as the program's option has them."""
-    words = text.split()
+    words = text.lower().split()
     if len(words) % 2 == 0:
         refuse("light", text, _LAMP)
     at = None if words[0] == "camera" else vector_in(words[0])

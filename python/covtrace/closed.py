@@ -21,13 +21,17 @@ class Hinting:
 
 
 class Closed(Hinting):
-    """Refuses to set attributes that its class has not: they would be lost without a word.
+    """Refuses to set attributes that its class neither has nor annotates: they would be lost without a word.
     `_items` names an item in the message, for classes whose values are items."""
 
     _items: str | None = None
+    _set_by: Mapping[str, str] = {}  # what to write in place of setting attributes that can only be read, by name
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_") and not hasattr(type(self), name):
+        if isinstance(found := getattr(type(self), name, None), property) and found.fset is None:
+            meant = self._set_by.get(name, "")
+            raise AttributeError(f"{name} of {type(self).__name__} cannot be set{meant and '; '}{meant}")
+        if not name.startswith("_") and not hasattr(type(self), name) and name not in type(self).__annotations__:
             meant = self._meant_by(name)
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r} to set{meant and '; '}{meant}")
         super().__setattr__(name, value)

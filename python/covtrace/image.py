@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _covtrace
 from .arguments import linear_of, path_of, refuse, text_of
-from .closed import Hinting
+from .closed import Closed
 from .scene_warnings import warn
 
 Array = NDArray[numpy.float32]
@@ -101,7 +101,7 @@ class _Metadata(dict[str, Any]):
 _WRITE = "write('picture.png') and write('image.exr') write it"
 
 
-class Image(Hinting):
+class Image(Closed):
     """A rendered or loaded image.
 
     Layers and channels are float32 views of the image's own memory: no copy is made, writing into
@@ -118,10 +118,20 @@ class Image(Hinting):
     statistics: counters, seconds per phase, memory; empty for images that were read.
     """
 
-    _other_names = {**dict.fromkeys(("save", "savefig", "to_file", "export", "write_png", "write_exr"), _WRITE),
+    _other_names = {**dict.fromkeys(("save", "savefig", "to_file", "export", "write_png", "write_exr", "to_png", "to_exr"), _WRITE),
                     **dict.fromkeys(("show", "plot", "display"), f"a notebook shows it where it is the last line of a cell; {_WRITE}"),
-                    **dict.fromkeys(("pixels", "data", "array", "numpy"), "rgb is its array, and layers and channels have the rest"),
-                    **dict.fromkeys(("stats", "time"), "statistics tells of the render")}
+                    **dict.fromkeys(("pixels", "data", "array", "numpy", "to_numpy", "asarray", "dtype", "mean", "max", "min", "astype", "copy"),
+                                    "rgb is its array, and layers and channels have the rest"),
+                    **dict.fromkeys(("stats", "time", "seconds", "spp"), "statistics and metadata tell of the render"),
+                    **dict.fromkeys(("exposure", "tonemap", "view", "gamma", "srgb"), "write('picture.png', exposure=1, view='agx') shows it so"),
+                    **dict.fromkeys(("to_pil", "pil", "__array_interface__"),
+                                    "rgb is linear and float32; write('picture.png') makes the file of 8 bits that other libraries open"),
+                    **dict.fromkeys(("depth", "z"), "its layers are items, such as ['Z']"),
+                    **dict.fromkeys(("normal", "normals"), "its layers are items, such as ['N']"),
+                    "denoise": "covtrace.denoise(image) makes another",
+                    **dict.fromkeys(("compare", "psnr", "mse", "flip"), "covtrace.compare(image, reference) measures it")}
+
+    _set_by = {"rgb": "image.rgb[:] = values writes into it, and Image.from_arrays(values) makes an image"}
 
     layers: Mapping[str, Array]
     channels: Mapping[str, Array]
@@ -130,6 +140,8 @@ class Image(Hinting):
 
     def __init__(self, planes: _covtrace.Planes, complete: bool | None = None,
                  statistics: dict[str, Any] | None = None) -> None:
+        if not isinstance(planes, _covtrace.Planes):
+            raise TypeError("Image() makes no images; Image.read(file) reads one, and Image.from_arrays(rgb) takes arrays")
         self._planes = planes
         self._metadata = _Metadata(planes)
         self.layers = MappingProxyType(planes.layers())

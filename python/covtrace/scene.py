@@ -38,6 +38,8 @@ class _OwnFolder:
 
 _LIGHT = "render(scene, light=...) adds lamps, environment=... lights it from all around"
 _ADD = "a SceneBuilder makes scenes; what a file has can be changed"
+_CHOSEN = "Scene(file, gltf_scene=..., animation=..., variant=...) chooses of a glTF file's, and summary() tells of the scene"
+_VIEW = "scene.camera.look_at(eye, target) places the camera, and render(scene, camera='eye x,y,z target x,y,z fov N') is another"
 
 
 class Scene(Closed):
@@ -57,8 +59,18 @@ class Scene(Closed):
                     **dict.fromkeys(("objects", "meshes", "nodes"), "there are shapes, instances and materials"),
                     **dict.fromkeys(("width", "height", "size"), "resolution is (width, height)"),
                     **dict.fromkeys(("bounds", "bbox", "bounding_box"), "extent has two corners of the box around all shapes"),
+                    **dict.fromkeys(("film", "sensor"), "resolution and spp are the film's; render(scene, resolution=..., spp=...) takes others"),
+                    **dict.fromkeys(("animations", "variants", "scenes"), _CHOSEN),
+                    **dict.fromkeys(("frames", "duration", "time"), "Scene(file, shutter=(begin, end)) is a glTF file at another time"),
+                    **dict.fromkeys(("look_at", "set_camera", "view", "fov"), _VIEW),
+                    **dict.fromkeys(("info", "describe", "triangles", "stats"), "summary() tells of the scene"),
+                    **dict.fromkeys(("save", "write", "export"), "scenes are not written; render(scene).write('image.exr') writes its image"),
                     "cameras": "Scene(file, camera=...) chooses one of a glTF file's, by its name or number",
                     "render": "covtrace.render(scene) renders it"}
+
+    _set_by = {"resolution": "render(scene, resolution=(width, height)) takes another", "spp": "render(scene, spp=...) takes another number",
+               "camera": _VIEW, "lights": _LIGHT,
+               **dict.fromkeys(("materials", "shapes", "instances", "area_lights"), "its items can be changed")}
 
     _named: Callable[[str], str]  # puts names into messages, for scenes of a SceneBuilder
     _files: _OwnFolder | None = None  # where a SceneBuilder's textures are, which each render reads

@@ -37,9 +37,22 @@ class Images(unittest.TestCase):
         image = covtrace.Image.from_arrays(numpy.zeros((3, 2, 3)), {"Z": numpy.ones((3, 2))})
         self.assertEqual((image.width, image.height, image.shape), (2, 3, image.rgb.shape))
         for name, told in (("save", r"write\('picture.png'\)"), ("show", "notebook"), ("Z", r"items, such as \['Z'\]"),
+                           ("mean", "rgb is its array"), ("to_pil", "linear and float32"), ("psnr", r"covtrace\.compare"),
                            ("frobnicate", "Image has no attribute 'frobnicate'$")):
             with self.subTest(name), self.assertRaisesRegex(AttributeError, told):
                 getattr(image, name)
+        with self.assertRaisesRegex(AttributeError, "^Image has no attribute 'exposure' to set; .*exposure=1"):
+            image.exposure = 1  # it was set and changed no picture
+        with self.assertRaisesRegex(AttributeError, r"^rgb of Image cannot be set; image\.rgb\[:\] = values"):
+            image.rgb = image.rgb * 2
+        with self.assertRaisesRegex(TypeError, r"Image\.read\(file\)"):
+            covtrace.Image("image.exr")
+
+    def test_names_of_the_module_tell_what_is_meant(self):
+        for name, told in (("load", r"Scene\(file\) .*Image\.read\(file\)"), ("imread", r"Image\.read\(file\)"),
+                           ("frobnicate", "module 'covtrace' has no attribute 'frobnicate'$")):
+            with self.subTest(name), self.assertRaisesRegex(AttributeError, told):
+                getattr(covtrace, name)
 
     def test_pictures_by_an_opencolorio_config(self):
         image = covtrace.Image.from_arrays(numpy.full((2, 2, 3), (0.4, 0.2, 0.1)))

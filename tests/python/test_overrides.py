@@ -166,9 +166,21 @@ Shape "sphere" "float radius" 3
             covtrace.render(covtrace.Scene.from_string(scenes.LIT), environment=numpy.ones((8, 16, 3)))
         self.assertRegex(str(raised.exception), r"\Aenvironment is array\(\[\[\[1\., 1\., 1\.\],[^\n]{0,120}…; expected an image's path[^\n]*\Z")
 
+    def test_cameras_tell_what_they_lack(self):
+        scene = covtrace.Scene.from_string(scenes.FURNACE)
+        for camera, lacking in (("eye 0,0,9 target 0,0,0", "'fov'"), ({"eye": (0, 0, 9)}, "'target' and 'fov'")):
+            with self.subTest(camera), self.assertRaisesRegex(covtrace.UsageError, f"expected {lacking}, too: "):
+                covtrace.render(scene, camera=camera)
+
+    def test_words_of_lamps_in_any_case(self):
+        scene = covtrace.Scene.from_string(scenes.LIT)
+        small, large = (covtrace.render(scene, spp=1, denoiser="none", light=light) for light in ("camera power 3", "Camera Power 3"))
+        numpy.testing.assert_array_equal(small.rgb, large.rgb)
+
     def test_names_of_other_programs(self):
         scene = covtrace.Scene.from_string(scenes.FURNACE)
-        for wrong, meant in (("samples", "did you mean 'spp'"), ("resolutoin", "did you mean 'resolution'"), ("fov", "did you mean 'camera'"),
+        for wrong, meant in (("samples", "did you mean 'spp'"), ("resolutoin", "did you mean 'resolution'"), ("res", "did you mean 'resolution'"),
+                             ("fov", "did you mean 'camera'"),
                              ("png", r"image\.write\('picture\.png'"), ("frames", "shutter="), ("qqq", r"help\(covtrace\.render\)")):
             for call in (covtrace.render, covtrace.start):
                 with self.subTest(wrong), self.assertRaisesRegex(TypeError, f"^{call.__name__}.. has no argument '{wrong}'; .*{meant}"):

@@ -67,6 +67,10 @@ class Parts(unittest.TestCase):
                                  (self.scene, "environment", r"Scene has no attribute 'environment' to set; .*environment=")):
             with self.assertRaisesRegex(AttributeError, told):
                 setattr(part, name, (1, 0, 0))
+        for name, told in (("resolution", r"render\(scene, resolution="), ("spp", r"render\(scene, spp="), ("camera", "look_at"),
+                           ("lights", "light="), ("materials", "items"), ("name", "name of Scene cannot be set$")):
+            with self.assertRaisesRegex(AttributeError, f"^{name} of Scene cannot be set.*{told}" if told[0] != "n" else f"^{told}"):
+                setattr(self.scene, name, None)
         self.scene.shapes[0].material = 1
         camera.to_world = moved(0, 1, 6)
         self.assertEqual(self.scene.shapes[0].material, 1)
@@ -74,6 +78,7 @@ class Parts(unittest.TestCase):
     def test_attributes_that_are_none_tell_what_is_meant(self):
         for part, name, told in ((self.scene, "add_light", "light=.* adds lamps"), (self.scene, "width", r"resolution is \(width, height\)"),
                                  (self.scene, "frobnicate", "Scene has no attribute 'frobnicate'$"),
+                                 (self.scene, "film", "resolution and spp"), (self.scene, "look_at", r"scene\.camera\.look_at"),
                                  (self.scene.camera, "position", "look_at"),
                                  (self.scene.materials["metal"], "reflectance", r"such as \['reflectance'\]"),
                                  (self.scene.shapes[0], "matrix", "Shape has no attribute 'matrix'$")):
