@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from .arguments import linear_of
 from .builder_calls import BuilderCalls, describe_call
+from .closed import Hinting
 from .errors import UsageError
 from .image import Image
 
@@ -108,7 +109,7 @@ def _moved(transform, end_transform):
     return lines
 
 
-class SceneBuilder:
+class SceneBuilder(Hinting):
     """Collects a scene and renders it, or writes it as a pbrt-v4 file with its meshes and textures.
 
     >>> scene = covtrace.SceneBuilder()
@@ -123,6 +124,14 @@ class SceneBuilder:
     `**{"spectrum eta": "metal-Cu-eta"}`, `**{"texture reflectance": "checks"}`.
     Transforms are 4x4 matrices for column vectors; `end_transform` is the one at the shutter's end.
     """
+
+    _other_names = {**dict.fromkeys(("sphere", "add_sphere", "disk", "add_shape"), "shape('sphere', radius=1) adds a shape by pbrt's name"),
+                    **dict.fromkeys(("add_mesh", "triangles", "add_triangles"), "mesh(vertices, triangles) adds a mesh"),
+                    **dict.fromkeys(("add_light", "environment", "add_lamp"), "light('infinite', L=1) adds a light by pbrt's name"),
+                    **dict.fromkeys(("set_camera", "look_at"), "camera(eye=..., target=..., fov=...) sets the camera"),
+                    "add_material": "material('red', 'diffuse', reflectance=...) adds a material",
+                    "add_texture": "texture('checks', values) adds a texture",
+                    "render": "covtrace.render(builder) renders it", "save": "write(folder) writes it"}
 
     def __init__(self) -> None:
         # Lines of the text, each with the call that it comes from

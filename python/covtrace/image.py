@@ -98,6 +98,10 @@ class _Metadata(dict[str, Any]):
         return dict, (dict(self),)
 
 
+# Layers by names in other programs
+_LAYER_NAMES = {**dict.fromkeys(("rgb", "RGB", "rgba", "color", "colour", "beauty", "Combined"), "image.rgb is the delivered image"),
+                **dict.fromkeys(("normal", "normals", "Normal"), "'N' has normals"), **dict.fromkeys(("depth", "z", "Depth"), "'Z' is the depth"),
+                "noisy": "'raw' is what no filter has seen"}
 _WRITE = "write('picture.png') and write('image.exr') write it"
 
 
@@ -186,8 +190,9 @@ class Image(Closed):
             return self.layers[name]
         if name in self.channels:
             return self.channels[name]
-        raise KeyError(f"no layer or channel {name!r}; there are "
-                       + ", ".join(repr(k) for k in self.layers))
+        meant = _LAYER_NAMES.get(name) if isinstance(name, str) else "image.rgb[y, x] for a pixel"
+        raise KeyError(f"no layer or channel {name!r}; there are " + ", ".join(repr(k) for k in self.layers)
+                       + (f"; {meant}" if meant else ""))
 
     def __contains__(self, name: object) -> bool:
         return name in self.layers or name in self.channels

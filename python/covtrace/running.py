@@ -12,6 +12,7 @@ from typing import Any
 
 from .arguments import refuse_unknown
 from .builder import SceneBuilder
+from .closed import Hinting
 from .image import Image
 from .progress import Progress
 from .rendering import render
@@ -19,7 +20,7 @@ from .scene import Scene
 from .scene_warnings import Place, place_of_caller, place_of_thread
 
 
-class RunningRender:
+class RunningRender(Hinting):
     """A render in a thread of its own, as `start` returns it.
 
     progress: the latest `Progress`, None before the first; its `fraction` is 1 once a complete image is there.
@@ -28,6 +29,9 @@ class RunningRender:
 
     In a coroutine, `await` gives what `result` does.
     """
+
+    _other_names = {**dict.fromkeys(("wait", "join", "get"), "result() waits for the image"),
+                    **dict.fromkeys(("stop", "kill", "abort", "terminate"), "cancel() ends it")}
 
     progress: Progress | None
     image: Image | None

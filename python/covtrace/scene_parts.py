@@ -9,7 +9,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _covtrace
-from .closed import Closed
+from .closed import Closed, Hinting
 from .errors import UsageError
 
 Matrix = NDArray[numpy.float64]
@@ -201,10 +201,12 @@ class Instance(Placed):
         return f"<instance {self._index}>"
 
 
-class Parts(Sequence[Any]):
+class Parts(Hinting, Sequence[Any]):
     """All parts of one kind; those with names are found by their names, too. `kind`: what messages
     call one of them. `joins`: whether `make` takes all indices of a name, or else the first."""
 
+    _other_names = {**dict.fromkeys(("names", "keys", "items", "values"), "[part.name for part in scene.materials] has the names of materials"),
+                    **dict.fromkeys(("append", "add", "remove", "insert"), "scene.remove_light(index) removes a light, a SceneBuilder makes scenes")}
     _ELSEWHERE = {"light": " of its own; `environment` and `light` of render take the place of what lights it instead"}
 
     def __init__(self, kind: str, make: Callable[..., Any], names: Sequence[str] | int, joins: bool = False) -> None:

@@ -174,6 +174,11 @@ class Builder(unittest.TestCase):
         for shutter in ((2, 3), (0, 0.25), (-1, 0)):
             self.assertLessEqual(abs(columns(shutter) - expected), 2, shutter)
 
+    def test_methods_of_other_libraries_tell_what_is_meant(self):
+        for name, told in (("add_sphere", r"shape\('sphere'"), ("render", r"covtrace\.render"), ("frobnicate", "attribute 'frobnicate'$")):
+            with self.subTest(name), self.assertRaisesRegex(AttributeError, told):
+                getattr(covtrace.SceneBuilder(), name)
+
     def test_integers_are_integers(self):
         scene = covtrace.SceneBuilder()
         scene.camera(resolution=(8, 8))

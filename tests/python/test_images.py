@@ -107,6 +107,11 @@ class Images(unittest.TestCase):
             numpy.testing.assert_array_equal(values, image[name])
         self.assertEqual([v.shape for v in image.values()], [(5, 7, 3), (5, 7), (5, 7, 3)])
 
+    def test_layers_tell_what_is_meant(self):
+        for name, told in (("normal", "'N' has normals"), ("rgb", "image.rgb"), ((0, 0), r"image\.rgb\[y, x\]"), ("hue", "'', 'Z', 'N'\"$")):
+            with self.subTest(name), self.assertRaisesRegex(KeyError, told):
+                self.image()[name]
+
     def test_arrays(self):
         image = self.image()
         view = numpy.asarray(image)

@@ -27,6 +27,8 @@ class Running(unittest.TestCase):
         self.assertIs(running.image, image)
         self.assertTrue(covtrace.compare(image, covtrace.render(self.scene(), **options)).identical)
         self.assertIn("done", repr(running))
+        with self.assertRaisesRegex(AttributeError, r"no attribute 'wait'; result\(\) waits"):
+            running.wait()
         self.assertEqual((running.progress.fraction, running.progress.remaining), (1, 0))
         self.assertAlmostEqual(running.progress.samples_per_pixel, image.statistics["spp"])
         self.assertEqual(running.progress.elapsed, image.statistics["seconds_total"])

@@ -79,7 +79,7 @@ class Parts(unittest.TestCase):
         for part, name, told in ((self.scene, "add_light", "light=.* adds lamps"), (self.scene, "width", r"resolution is \(width, height\)"),
                                  (self.scene, "frobnicate", "Scene has no attribute 'frobnicate'$"),
                                  (self.scene, "film", "resolution and spp"), (self.scene, "look_at", r"scene\.camera\.look_at"),
-                                 (self.scene.camera, "position", "look_at"),
+                                 (self.scene.camera, "position", "look_at"), (self.scene.materials, "keys", r"\[part\.name"),
                                  (self.scene.materials["metal"], "reflectance", r"such as \['reflectance'\]"),
                                  (self.scene.shapes[0], "matrix", "Shape has no attribute 'matrix'$")):
             with self.assertRaisesRegex(AttributeError, told):
