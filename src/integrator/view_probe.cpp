@@ -224,7 +224,8 @@ bool ViewProbe::is_lit(const SurfaceHit& hit, Vec3 view, const Lights& lights, i
 bool ViewProbe::is_dark(const Lights& lights) const {
     int seen = 0, lit = 0;
     for_all_seen([&](const SurfaceHit& hit, Vec3 view) {
-        lit += glows(hit, -view) || is_lit(hit, view, lights, seen++);
+        if (glows(hit, -view)) return;
+        lit += is_lit(hit, view, lights, seen++);
     });
     return seen > 0 && float(lit) < kLeastReached * float(seen);
 }

@@ -33,8 +33,9 @@ class ViewProbe {
     /// distant lights and the sky. As much makes the program tell of a dark image
     /// (image/darkness.h). `open`: shapes, by their place in Geometry::shapes, that let light pass.
     bool is_dark(const std::vector<bool>& open = {}) const;
-    /// Whether less than half of what is seen glows or gets light of `lights`, straight or by way
-    /// of others, that makes a white surface as bright as the first of 255 steps above black.
+    /// Whether less than half of what is seen and does not glow gets light of `lights`, straight or
+    /// by way of others, that makes a white surface as bright as the first of 255 steps above
+    /// black.
     bool is_dark(const Lights& lights) const;
     /// The shapes, by their place in Geometry::shapes, that are the last on most ways to the light
     /// outside on which they lie, from what is seen. Shapes that emit, and borders of media, are

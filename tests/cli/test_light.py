@@ -317,6 +317,21 @@ class Light(CliTest):
             else:
                 self.assertGreater(self.mean(image["G"]), 0.05)
 
+    def test_words_of_lamps_in_any_case(self):
+        small, large = (self.seen("--light", text)[0] for text in ("camera power 3", "Camera Power 3"))
+        self.assertEqual(small["G"], large["G"])
+
+    def test_lamps_in_view_are_no_surfaces_that_light_reaches(self):
+        # From below the lamp fills most of the view, and what is seen of the floor beside it is dark
+        self.write("lamp.gltf", lamp_and_floor(-1))
+        result = self.run_program("render", "lamp.gltf", "-o", "out.exr", "--resolution", "16x16", "--spp", "16", "--progress", "none",
+                                  "--camera", "eye 1.5,0,-4 target 0.2,0,-0.5 fov 25")
+        self.assertEqual(result.code, DONE, result)
+        self.assertIn("surfaces that glow, which leave most of what is seen dark", "".join(text for _, text in warnings_of(result)))
+        image = exr.read(self.folder / "out.exr").pixels["G"]
+        self.assertGreater(sum(value > 4 for value in image), len(image) / 2)
+        self.assertGreater(min(image), 0.01)
+
     def test_scenes_without_shapes_are_told(self):
         sky = ROOM.split("Material")[0]
         self.assertIn("the scene has no shapes", self.seen(scene=sky)[1][0])
