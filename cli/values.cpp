@@ -202,7 +202,8 @@ CameraOverride parse_camera(const std::string& option, const std::string& text) 
             if (!std::isfinite(v)) refuse(option, text, kExpected);
     }
     for (const char* name : {"eye", "target", "fov"})
-        if (!values.count(name)) refuse(option, text, kExpected);
+        if (!values.count(name))
+            refuse(option, text, fmt::format("{}; '{}' is missing", kExpected, name));
     const auto vector = [&](const char* name) {
         const std::vector<float>& v = values.at(name);
         return Vec3{v[0], v[1], v[2]};
@@ -246,7 +247,9 @@ LampDescription parse_lamp(const std::string& option, const std::string& text) {
                                 [&](float c) { return c >= least && c <= kMost; }));
         return *v;
     };
-    std::istringstream words(text);
+    std::string small = text;
+    for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+    std::istringstream words(small);
     std::string place;
     words >> place;
     LampDescription lamp;
@@ -282,7 +285,8 @@ float parse_degrees(const std::string& option, const std::string& text) {
 }
 
 float parse_number(const std::string& option, const std::string& text, float least, float most) {
-    const auto value = list_of<float, 1>(text, ',');
+    const bool has_plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+    const auto value = list_of<float, 1>(std::string_view(text).substr(has_plus ? 1 : 0), ',');
     if (!value || !((*value)[0] >= least && (*value)[0] <= most))
         refuse(option, text, fmt::format("a number from {:.10g} to {:.10g}", least, most));
     return (*value)[0];

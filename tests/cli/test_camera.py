@@ -143,6 +143,12 @@ class Camera(CliTest):
             self.assert_fails(self.render(scene, *arguments, "--resume", "--camera", other), USAGE, "--camera")
         self.assert_fails(self.render(scene, *arguments[:4], "--resume"), USAGE, "--camera", "the scene's")
 
+    def test_what_a_view_lacks_is_told(self):
+        for text, lacking in (("eye 0,0,8 target 0,0,0", "fov"), ("eye 0,0,8 fov 30", "target")):
+            result = self.render(ELSEWHERE, "--camera", text)
+            self.assertEqual(result.code, USAGE, result)
+            self.assertIn(f"; '{lacking}' is missing", result.stderr)
+
     def test_errors(self):
         scene = ELSEWHERE + 'Camera "perspective"\n' + FILM + WORLD
         for wrong in (

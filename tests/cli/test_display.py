@@ -41,6 +41,7 @@ class Display(CliTest):
         self.assertEqual(self.picture(".5 .25 .125"), (188, 137, 99))
         self.assertEqual(self.picture(".25 .125 .0625", "--exposure", "1"), (188, 137, 99))
         self.assertEqual(self.picture("2 1 .5", "--exposure=-2"), (188, 137, 99))
+        self.assertEqual(self.picture(".25 .125 .0625", "--exposure", "+1"), (188, 137, 99))
         self.assertEqual(self.picture(".5 .25 .125", "--exposure", "0", "--view", "srgb"), (188, 137, 99))
 
     def test_views(self):
