@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike
 
-from .arguments import linear_of
+from .arguments import linear_of, refuse, resolution_of
 from .builder_calls import BuilderCalls, describe_call
 from .closed import Hinting
 from .errors import UsageError
@@ -145,12 +145,16 @@ class SceneBuilder(Hinting):
 
     def camera(self, eye: Sequence[float] = (0, 0, 0), target: Sequence[float] = (0, 0, 1),
                up: Sequence[float] = (0, 1, 0), kind: str = "perspective",
-               resolution: tuple[int, int] = (640, 360), shutter: tuple[float, float] = (0, 1),
+               resolution: tuple[int, int] | str = (640, 360), shutter: tuple[float, float] = (0, 1),
                **parameters: Any) -> None:
         """Sets the camera, in place of an earlier one; kind and parameters as pbrt's Camera: fov,
         lensradius, focaldistance ..."""
         self._shutter = shutter
-        width, height = resolution
+        size = resolution_of(resolution)
+        try:
+            width, height = size
+        except (TypeError, ValueError):
+            refuse("resolution", resolution, "(width, height), or a text such as '640x360'")
         call = describe_call("camera", kind)
         self._camera = [(line, call) for line in [
             "LookAt " + " ".join(repr(float(v)) for v in (*eye, *target, *up)),

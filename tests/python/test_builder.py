@@ -174,6 +174,14 @@ class Builder(unittest.TestCase):
         for shutter in ((2, 3), (0, 0.25), (-1, 0)):
             self.assertLessEqual(abs(columns(shutter) - expected), 2, shutter)
 
+    def test_resolutions_may_be_texts(self):
+        builder = covtrace.SceneBuilder()
+        builder.camera(resolution="12x8")
+        self.assertEqual(covtrace.Scene(builder).resolution, (12, 8))
+        for wrong in ("12", 12, (1, 2, 3)):
+            with self.subTest(wrong), self.assertRaisesRegex(covtrace.UsageError, r"resolution is .*; expected \(width, height\)"):
+                builder.camera(resolution=wrong)
+
     def test_methods_of_other_libraries_tell_what_is_meant(self):
         for name, told in (("add_sphere", r"shape\('sphere'"), ("render", r"covtrace\.render"), ("frobnicate", "attribute 'frobnicate'$")):
             with self.subTest(name), self.assertRaisesRegex(AttributeError, told):
