@@ -94,9 +94,8 @@ bool is_true(const std::vector<double>& value) {
 size_t default_size(const Path& path) {
     const std::string &name = path.back(), &parent = path[path.size() - 2];
     if (name == "specularFactor") return parent == "KHR_materials_pbrSpecularGlossiness" ? 3 : 1;
-    if (name == "scale") return parent == "KHR_texture_transform" ? 2 : 1;
+    if (name == "scale" || name == "offset") return parent == "KHR_texture_transform" ? 2 : 1;
     if (name == "baseColorFactor" || name == "diffuseFactor") return 4;
-    if (name == "offset") return 2;
     const bool is_colour = name == "color" || name == "emissiveFactor" ||
                            name.ends_with("ColorFactor") || name == "attenuationColor";
     return is_colour ? 3 : 1;
