@@ -31,7 +31,8 @@ class Closed(Hinting):
         if isinstance(found := getattr(type(self), name, None), property) and found.fset is None:
             meant = self._set_by.get(name, "")
             raise AttributeError(f"{name} of {type(self).__name__} cannot be set{meant and '; '}{meant}")
-        if not name.startswith("_") and not hasattr(type(self), name) and name not in type(self).__annotations__:
+        is_annotated = any(name in getattr(kind, "__annotations__", {}) for kind in type(self).__mro__)
+        if not name.startswith("_") and not hasattr(type(self), name) and not is_annotated:
             meant = self._meant_by(name)
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r} to set{meant and '; '}{meant}")
         super().__setattr__(name, value)

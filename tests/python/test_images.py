@@ -54,6 +54,16 @@ class Images(unittest.TestCase):
             with self.subTest(name), self.assertRaisesRegex(AttributeError, told):
                 getattr(covtrace, name)
 
+    def test_images_may_be_derived_from(self):
+        class Named(covtrace.Image):
+            title: str
+
+        image = Named(covtrace.Image.from_arrays(numpy.zeros((3, 2, 3)))._planes)
+        image.title = "black"
+        self.assertEqual((image.title, image.shape, image.complete), ("black", (3, 2, 3), True))
+        with self.assertRaisesRegex(AttributeError, "no attribute 'name' to set"):
+            image.name = "black"
+
     def test_pictures_by_an_opencolorio_config(self):
         image = covtrace.Image.from_arrays(numpy.full((2, 2, 3), (0.4, 0.2, 0.1)))
         with tempfile.TemporaryDirectory() as name:
