@@ -32,9 +32,9 @@ struct SensorMatrices {
 /// docs/decisions/0100-sensors-as-matrices.md.
 SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin);
 
-/// Colours of black bodies for images that a sensor shows. To the standard observer's colours a
-/// matrix can't be exact: a fire's blue, small beside its red, was 6 % too dark. With the colours
-/// from here the sensor shows light itself as pbrt-v4 shows its spectrum.
+/// Colours of black bodies for images that a sensor shows. A matrix on the standard observer's
+/// colours can't be exact for all light: blue of a fire, small beside its red, comes out too dark.
+/// With the colours from here the sensor shows light itself as pbrt-v4 shows its spectrum.
 class SensorLight {
   public:
     SensorLight(const SensorCurves& sensor, const SensorMatrices& matrices);
