@@ -25,10 +25,14 @@ def lit_matrix(lamp):
     def of_point(matrix):
         return with_extent(matrix) or mathutils.Matrix.Translation(matrix.translation)
 
-    def of_others(matrix):
-        return with_extent(matrix) if all(matrix.col[axis].xyz.length > 0 for axis in ((0, 1, 2) if lamp.type == "AREA" else (2,))) else None
+    def of_area(matrix):
+        is_dark = bpy.app.version >= (4, 0, 0) and any(column.xyz.length == 0 for column in matrix.col[:3])
+        return None if is_dark else with_extent(matrix)  # Cycles 3.4 shines without an extent along z, 4.5 does not
 
-    return of_point if lamp.type == "POINT" else of_others
+    def of_others(matrix):
+        return with_extent(matrix) if matrix.col[2].xyz.length > 0 else None
+
+    return {"POINT": of_point, "AREA": of_area}.get(lamp.type, of_others)
 
 
 def write_lamp(out, lamp, matrix, end, hidden, images, warn):

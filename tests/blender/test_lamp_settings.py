@@ -39,7 +39,7 @@ class LampSettingsTest(CyclesTest):
         self.assert_as_cycles_with("POINT", energy=100, shadow_soft_size=0.2, scale=(1, 1, 0))
         self.assert_as_cycles_with("POINT", energy=100, shadow_soft_size=0, scale=(0, 0, 0))
         self.assert_as_cycles_with("SUN", energy=3, scale=(0, 1, 1), turn=(0.3, 0.2, 0))
-        self.assert_as_cycles_with("AREA", energy=30, size=1, scale=(1, 1, 0), turn=(0.3, 0.2, 0))  # dark
+        self.assert_as_cycles_with("AREA", energy=30, size=1, scale=(1, 1, 0), turn=(0.3, 0.2, 0))  # dark since 4.0
 
     def test_spreads_of_area_lamps(self):
         for degrees in (150, 90, 45):
