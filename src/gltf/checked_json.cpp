@@ -138,10 +138,13 @@ void check_extensions(const json& root, const std::string& name) {
     }
     if (missing.empty()) return;
     const bool is_one = missing.size() == 1;
-    throw Error(ErrorKind::scene,
-                name + ": extensionsRequired: the file can't be read without the extension" +
-                    (is_one ? " " : "s ") + listed(missing) + ", which " + (is_one ? "is" : "are") +
-                    " not supported");
+    const bool has_basis = std::ranges::count(missing, "KHR_texture_basisu") > 0;
+    throw Error(
+        ErrorKind::scene,
+        name + ": extensionsRequired: the file can't be read without the extension" +
+            (is_one ? " " : "s ") + listed(missing) + ", which " + (is_one ? "is" : "are") +
+            " not supported" +
+            (has_basis ? "; 'gltf-transform ktxdecompress' makes PNGs of its textures" : ""));
 }
 
 }  // namespace

@@ -55,6 +55,10 @@ ImageFormat format_of(std::string_view bytes, const std::filesystem::path& file,
         std::isspace(static_cast<unsigned char>(bytes[2])))
         return ImageFormat::pnm;
     if (lower_case_extension(file) == ".tga") return ImageFormat::targa;
+    if (bytes.starts_with("\xabKTX"sv))
+        throw_unreadable(file, where,
+                         "it is a KTX texture, which is not read; expected a PNG, as "
+                         "'gltf-transform ktxdecompress' makes of those of glTF");
     throw_unreadable(file, where,
                      "it is no image of a known format (EXR, PNG, JPEG, TGA, HDR, PFM, QOI, WebP)");
 }

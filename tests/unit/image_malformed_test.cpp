@@ -141,6 +141,10 @@ TEST(Malformed, NotAnImage) {
     EXPECT_NE(std::string(error_of([&] { read_image(directory / "text.png"); }).what())
                   .find("it is no image of a known format"),
               std::string::npos);
+    write_bytes(directory / "a.ktx2", "\xabKTX 20\xbb\r\n\x1a\n");
+    EXPECT_NE(std::string(error_of([&] { read_image(directory / "a.ktx2"); }).what())
+                  .find("it is a KTX texture, which is not read"),
+              std::string::npos);
 }
 
 }  // namespace
