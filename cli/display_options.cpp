@@ -8,8 +8,8 @@ namespace covtrace::cli {
 
 void add_display_options(CLI::App* c, DisplayArguments& a) {
     const auto parse = [&a](const std::string& text) {
-        // The darkest one shows the largest numbers of single precision. Brighter than the other end
-        // all but a few images are white.
+        // The darkest one shows the largest numbers of single precision. Brighter than the other
+        // end all but a few images are white.
         constexpr float kLeast = -130, kMost = 60;
         a.exposure = parse_number("--exposure", text, kLeast, kMost);
     };
