@@ -34,7 +34,8 @@ SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin);
 
 /// Colours of black bodies for images that a sensor shows. A matrix on the standard observer's
 /// colours can't be exact for all light: blue of a fire, small beside its red, comes out too dark.
-/// With the colours from here the sensor shows light itself as pbrt-v4 shows its spectrum.
+/// With the colours from here the sensor shows light itself as pbrt-v4 shows its spectrum, but for
+/// the fit of the standard observer.
 class SensorLight {
   public:
     SensorLight(const SensorCurves& sensor, const SensorMatrices& matrices);

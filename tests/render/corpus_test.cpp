@@ -89,6 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"film-maxcomponentvalue", Where::everywhere, {3.1432f, 1.5716f, 0.7858f}},
                     Known{"film-whitebalance", Where::everywhere, Rgb(1), 0.02},
                     Known{"film-sensor", Where::everywhere, {0.9885f, 0.9916f, 0.9965f}, 2e-3},
+                    Known{"film-sensor-glow", Where::everywhere, {2.11f, 0.791f, 0.188f}, 0.032},
                     Known{"light-point", Where::everywhere, kLit},
                     Known{"light-point-power", Where::everywhere, kLit},
                     Known{"light-spot", Where::corners, Rgb(0)},
