@@ -274,6 +274,18 @@ TEST(GltfAnimatedProperties, ValuesOfAnotherSizeAreTold) {
     }
 }
 
+TEST(GltfAnimatedProperties, NamesOfNoPropertyRest) {
+    // An exporter of public files animates the offset beside the transform of the texture.
+    GltfFile file =
+        with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    file.root["images"] = {
+        {{"bufferView", file.add_view("bytes of an image")}, {"mimeType", "image/png"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    animate(file, "/materials/0/pbrMetallicRoughness/baseColorTexture/offset", {0, 1}, "SCALAR", 1);
+    const std::string warnings = all_warnings(halfway(file));
+    EXPECT_FALSE(contains(warnings, "rests")) << warnings;
+}
+
 TEST(GltfAnimatedProperties, ValuesOfAnotherSizeThanTheDefaultAreTold) {
     for (const char* pointer :
          {"/materials/0/emissiveFactor", "/materials/0/pbrMetallicRoughness/roughnessFactor",
