@@ -8,7 +8,7 @@
 
 namespace covtrace {
 
-/// Reflectances at 380, 390, ... 730 nm, in thousandths; pbrt-v4 has nothing outside.
+/// Reflectances at 380, 390, ... 730 nm, in thousandths; the end values go on outside, as in pbrt-v4.
 using ChartReflectance = std::array<uint16_t, 36>;
 std::span<const ChartReflectance> chart_reflectances();
 

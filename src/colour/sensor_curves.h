@@ -12,7 +12,7 @@ namespace covtrace {
 struct SensorCurves {
     std::string_view name;
     /// Responses of red, green and blue at 380, 390, ... 720 nm, relative to the largest of green,
-    /// in units of 1/10000; nothing outside.
+    /// in units of 1/10000; the end values go on outside, as in pbrt-v4.
     std::array<std::array<uint16_t, 35>, 3> values;
 };
 

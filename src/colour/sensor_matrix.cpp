@@ -13,15 +13,31 @@ namespace covtrace {
 
 namespace {
 
-/// Values at the wavelengths of observer_samples().
+/// Wavelengths that a sensor sees, in steps of kObserverStep, with what light there adds to the
+/// observer's colour. They reach farther than the observer's own, as pbrt's do: a sensor of which
+/// a little is left in the infrared sees much of it in fire.
+const std::vector<ObserverSample>& wavelengths() {
+    static const std::vector<ObserverSample> all = [] {
+        constexpr int kFirst = 360, kLast = 830;
+        std::vector<ObserverSample> list;
+        for (int l = kFirst; l <= kLast; l += kObserverStep) list.push_back({double(l), {}});
+        for (const ObserverSample& seen : observer_samples())
+            list[static_cast<size_t>(seen.wavelength - kFirst) / kObserverStep] = seen;
+        return list;
+    }();
+    return all;
+}
+
+/// Values at wavelengths().
 using Samples = std::vector<double>;
 
+/// A measurement at 380, 390, ... nm, linear between them; its end values go on outside, as pbrt
+/// has it.
 template <size_t Count>
 double interpolated(const std::array<uint16_t, Count>& table, double unit, double wavelength) {
     constexpr double kFirst = 380, kStep = 10;
-    const double x = (wavelength - kFirst) / kStep;
-    const auto i = static_cast<size_t>(x);
-    if (i + 1 > Count - 1) return i == Count - 1 && x == double(i) ? unit * table[i] : 0;
+    const double x = std::clamp((wavelength - kFirst) / kStep, 0.0, double(Count - 1));
+    const auto i = std::min(static_cast<size_t>(x), Count - 2);
     const double t = x - static_cast<double>(i);
     return unit * ((1 - t) * table[i] + t * table[i + 1]);
 }
@@ -29,7 +45,7 @@ double interpolated(const std::array<uint16_t, Count>& table, double unit, doubl
 template <typename Function>
 Samples sampled(Function f) {
     Samples s;
-    for (const ObserverSample& o : observer_samples()) s.push_back(f(o.wavelength));
+    for (const ObserverSample& w : wavelengths()) s.push_back(f(w.wavelength));
     return s;
 }
 
@@ -37,7 +53,7 @@ double luminance_of(const Triple& c) {
     return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
 
-/// Light of which the part `factor` arrives, both at the wavelengths of observer_samples().
+/// Light of which the part `factor` arrives, both at wavelengths().
 class Eye {
   public:
     explicit Eye(const SensorCurves& sensor) {
@@ -51,14 +67,14 @@ class Eye {
         Triple sum{};
         for (size_t i = 0; i < light.size(); ++i)
             for (size_t c = 0; c < 3; ++c)
-                sum[c] += observer_samples()[i].weight[c] * factor[i] * light[i] / d65_[i];
+                sum[c] += wavelengths()[i].weight[c] * factor[i] * light[i] / d65_[i];
         return sum;
     }
     /// Integral of D65 and CIE's y over nanometres.
     double luminance_of_d65() const {
         double relative = 0;
         for (size_t i = 0; i < d65_.size(); ++i)
-            relative += luminance_of(observer_samples()[i].weight) / d65_[i];
+            relative += luminance_of(wavelengths()[i].weight) / d65_[i];
         return kLuminanceOfOne / relative;
     }
     /// The sensor's three values, the integrals over nanometres divided by kObserverStep.

@@ -34,8 +34,7 @@ SensorMatrices sensor_matrices(const SensorCurves& sensor, float kelvin);
 
 /// Colours of black bodies for images that a sensor shows. A matrix on the standard observer's
 /// colours can't be exact for all light: blue of a fire, small beside its red, comes out too dark.
-/// With the colours from here the sensor shows light itself as pbrt-v4 shows its spectrum, but for
-/// the fit of the standard observer.
+/// With the colours from here the sensor shows light itself as pbrt-v4 shows its spectrum.
 class SensorLight {
   public:
     SensorLight(const SensorCurves& sensor, const SensorMatrices& matrices);
@@ -45,8 +44,7 @@ class SensorLight {
     Rgb blackbody_colour(double kelvin) const;
 
   private:
-    /// By the wavelengths of observer_samples(): what light there adds to the colour, and to the
-    /// luminance.
+    /// By wavelength: what light there adds to the colour, and to the luminance.
     std::vector<Triple> colour_;
     std::vector<double> luminance_;
 };

@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "colour/standard_observer.h"
+
 namespace covtrace {
 
 namespace {
 
-struct Xyz {
-    double x = 0, y = 0, z = 0;
-};
 struct Rgb64 {
     std::array<double, 3> c{};
 };
@@ -26,20 +25,8 @@ constexpr std::array<double, 41> kD65{49.9755, 54.6482, 82.7549, 91.486,  93.431
                                       80.2146, 82.2778, 78.2842, 69.7213, 71.6091, 74.349,  61.604,
                                       69.8856, 75.087,  63.5927, 46.4182, 66.8054, 63.3828};
 
-double lobe(double wavelength, double centre, double below, double above) {
-    const double t = (wavelength - centre) / (wavelength < centre ? below : above);
-    return std::exp(-0.5 * t * t);
-}
-
-Xyz matching(double l) {
-    return {1.056 * lobe(l, 599.8, 37.9, 31.0) + 0.362 * lobe(l, 442.0, 16.0, 26.7) -
-                0.065 * lobe(l, 501.1, 20.4, 26.2),
-            0.821 * lobe(l, 568.8, 46.9, 40.5) + 0.286 * lobe(l, 530.9, 16.3, 31.1),
-            1.217 * lobe(l, 437.0, 11.8, 36.0) + 0.681 * lobe(l, 459.0, 26.0, 13.8)};
-}
-
 /// Converts XYZ to linear Rec.709, from the primaries and the white point of ITU-R BT.709.
-Rgb64 rec709(const Xyz& v) {
+Rgb64 rec709(const TristimulusValues& v) {
     return {{3.2409699419 * v.x - 1.5373831776 * v.y - 0.4986107603 * v.z,
              -0.9692436363 * v.x + 1.8759675015 * v.y + 0.0415550574 * v.z,
              0.0556300797 * v.x - 0.2039769589 * v.y + 1.0569715142 * v.z}};
@@ -58,7 +45,7 @@ class Response {
   public:
     Response() {
         for (size_t i = 0; i < table_.size(); ++i)
-            table_[i] = rec709(matching(kFirst + static_cast<double>(i)));
+            table_[i] = rec709(matching_functions(kFirst + static_cast<double>(i)));
     }
     Rgb64 at(double l) const {
         const auto i = std::min(static_cast<size_t>(l - kFirst), table_.size() - 2);
@@ -201,9 +188,10 @@ double Spectrum::at(double l) const {
 }
 
 Spectrum blackbody_spectrum(double kelvin) {
+    constexpr int kShortest = 360, kLongest = 830;
     std::vector<double> logs;
     Spectrum s;
-    for (int l = kFirst; l <= kLast; ++l) {
+    for (int l = kShortest; l <= kLongest; ++l) {
         s.wavelengths.push_back(static_cast<float>(l));
         logs.push_back(log_planck(l, kelvin));
     }

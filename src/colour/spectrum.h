@@ -1,10 +1,10 @@
 /// Spectra of scene files and the linear Rec.709 colours that stand for them
 /// (docs/reference/colour.md).
 ///
-/// Integrals use the CIE 1931 colour matching functions in the analytic fit of Wyman, Sloan and
-/// Shirley (JCGT 2013, single- and multi-lobe fits), from 380 to 780 nm. Every colour is divided by
-/// that of D65 through the same functions, so that a white surface is exactly (1, 1, 1). Spectra
-/// are integrated exactly as straight lines between their wavelengths, however near these lie.
+/// Integrals use the colour matching functions of the CIE 1931 standard observer, from 380 to 780
+/// nm. Every colour is divided by that of D65 through the same functions, so that a white surface
+/// is exactly (1, 1, 1). Spectra are integrated exactly as straight lines between their
+/// wavelengths, however near these lie.
 #pragma once
 
 #include <array>
@@ -38,8 +38,8 @@ struct ObserverSample {
 /// weight, exact where f is straight between the wavelengths; that of f = 1 is white.
 std::span<const ObserverSample> observer_samples();
 
-/// Spectrum of a black body at this temperature (kelvin, > 0) by Planck's law, its largest visible
-/// value 1.
+/// Spectrum of a black body at this temperature (kelvin, > 0) by Planck's law from 360 to 830 nm,
+/// its largest value there 1.
 Spectrum blackbody_spectrum(double kelvin);
 
 /// Luminance of a black body at this temperature (kelvin, > 0) whose spectral radiance is 1 where
