@@ -43,15 +43,20 @@ bool is_option(const std::string& argument) {
     return argument.size() > 1 && argument.front() == '-';
 }
 
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* c : app.get_subcommands(nullptr)) names.push_back(c->get_name());
+    return names;
+}
+
 /// Says that a word in the place of a command is none.
 std::string explain_command(const CLI::App& app, const std::string& word) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(word, ignored))
         return covtrace::path_in_quotes(word) +
                " is no command; 'covtrace render FILE' renders a scene";
-    std::vector<std::string> known;
-    for (const CLI::App* c : app.get_subcommands(nullptr)) known.push_back(c->get_name());
-    return "unknown command " + covtrace::in_quotes(word) + covtrace::did_you_mean(word, known);
+    return "unknown command " + covtrace::in_quotes(word) +
+           covtrace::did_you_mean(word, names_of_commands(app));
 }
 
 /// The reason why the command line is wrong; CLI11 itself does not name a command that it does not
@@ -73,6 +78,21 @@ std::string explain(const CLI::App& app, const CLI::ParseError& e) {
                (other ? "; did you mean " + in_quotes(*other) + "?" : did_you_mean(*option, known));
     }
     return e.what();
+}
+
+/// The arguments, where `help COMMAND` is `COMMAND --help` and `help` alone is `--help`; the last
+/// one comes first, as CLI11 takes them. A word that is no command stays, to be explained.
+std::vector<std::string> arguments_reversed(const CLI::App& app, int argc, char** argv) {
+    std::vector<std::string> all(argv + std::min(argc, 1), argv + argc);
+    if (!all.empty() && all.front() == "help") {
+        all.erase(all.begin());
+        all.resize(std::min<size_t>(all.size(), 1));
+        const std::vector<std::string> commands = names_of_commands(app);
+        if (all.empty() || std::find(commands.begin(), commands.end(), all[0]) != commands.end())
+            all.emplace_back("--help");
+    }
+    std::reverse(all.begin(), all.end());
+    return all;
 }
 
 int run(int argc, char** argv) {
@@ -106,7 +126,7 @@ int run(int argc, char** argv) {
         "  covtrace inspect image.exr --pixel 120,45\n"
         "'covtrace COMMAND --help' tells a command's options, 'man covtrace' tells more.");
     try {
-        app.parse(argc, argv);
+        app.parse(arguments_reversed(app, argc, argv));
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) {
             app.exit(e);  // prints the help or the version

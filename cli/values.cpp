@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "core/error.h"
 
 namespace covtrace::cli {
@@ -28,6 +29,10 @@ bool take_number(std::string_view& text, T& value) {
     return true;
 }
 
+char small_letter(char c) {
+    return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+}
+
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected) {
     throw Error(ErrorKind::usage, option + ": '" + text + "' is not " + expected);
@@ -38,7 +43,7 @@ template <typename T, size_t N>
 std::optional<std::array<T, N>> list_of(std::string_view rest, char separator) {
     std::array<T, N> values{};
     for (size_t i = 0; i < N; ++i) {
-        const bool separated = i == 0 || (!rest.empty() && rest.front() == separator);
+        const bool separated = i == 0 || (!rest.empty() && small_letter(rest.front()) == separator);
         if (separated && i > 0) rest.remove_prefix(1);
         if (!separated || !take_number(rest, values[i])) return std::nullopt;
     }
@@ -68,7 +73,7 @@ double parse_duration(const std::string& option, const std::string& text) {
             double value = 0;
             if (!take_number(rest, value) || !(value >= 0) || rest.empty())
                 refuse(option, text, kExpected);
-            const char unit = rest.front();
+            const char unit = small_letter(rest.front());
             rest.remove_prefix(1);
             if (unit != 's' && unit != 'm' && unit != 'h') refuse(option, text, kExpected);
             seconds += value * (unit == 'h' ? 3600 : (unit == 'm' ? 60 : 1));
@@ -162,13 +167,15 @@ double parse_paths(const std::string& option, const std::string& text) {
 
 size_t parse_size(const std::string& option, const std::string& text) {
     constexpr auto kExpected = "a size in bytes such as 500M or 2G";
-    constexpr std::string_view kUnits = "kMGT";
+    constexpr std::string_view kUnits = "kmgt";
     std::string_view rest = text;
     double bytes = 0;
     if (!take_number(rest, bytes)) refuse(option, text, kExpected);
     if (!rest.empty()) {
-        const size_t unit = kUnits.find(rest);
-        if (rest.size() != 1 || unit == std::string_view::npos) refuse(option, text, kExpected);
+        const size_t unit = kUnits.find(small_letter(rest.front()));
+        const bool is_whole = rest.size() == 1 || is_same_name(rest.substr(1), "b") ||
+                              is_same_name(rest.substr(1), "ib");
+        if (!is_whole || unit == std::string_view::npos) refuse(option, text, kExpected);
         bytes = std::ldexp(bytes, 10 * (int(unit) + 1));
     }
     if (!(bytes >= 0) || !(bytes < 1e18)) refuse(option, text, kExpected);
@@ -248,7 +255,7 @@ LampDescription parse_lamp(const std::string& option, const std::string& text) {
         return *v;
     };
     std::string small = text;
-    for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+    for (char& c : small) c = small_letter(c);
     std::istringstream words(small);
     std::string place;
     words >> place;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <span>
 #include <string_view>
 
+#include "core/enum_names.h"
 #include "core/error.h"
 
 namespace covtrace {
@@ -31,6 +34,15 @@ std::string layer_of(const Channel& c) {
     return c.name.substr(0, c.name.rfind('.'));
 }
 
+std::optional<std::string_view> layer_named(std::string_view text) {
+    const auto is_it = [text](std::string_view name) { return is_same_name(name, text); };
+    for (const std::span<const std::string_view> names :
+         {std::span<const std::string_view>(kStandard), {kSurfaces}, {kParts}})
+        if (const auto at = std::find_if(names.begin(), names.end(), is_it); at != names.end())
+            return *at;
+    return std::nullopt;
+}
+
 /// All names that a selection may have, with commas.
 std::string known() {
     std::string text;
@@ -52,20 +64,24 @@ bool is_selected(const Channel& c, const LayerSelection& selection) {
 }  // namespace
 
 LayerSelection parse_layers(const std::string& option, const std::string& text) {
-    if (text == "none") return {};
     LayerSelection selection;
+    bool is_none = false;
     for (size_t from = 0; from <= text.size();) {
         const size_t to = std::min(text.find(',', from), text.size());
         const std::string name = text.substr(from, to - from);
-        if (name == "all")
+        if (is_same_name(name, "all"))
             selection.all = true;
-        else if (contains(kStandard, name) || contains(kSurfaces, name) || contains(kParts, name))
-            selection.names.push_back(name);
+        else if (is_same_name(name, "none"))
+            is_none = true;
+        else if (const auto layer = layer_named(name))
+            selection.names.emplace_back(*layer);
         else
             throw Error(ErrorKind::usage, option + ": there is no layer '" + name +
                                               "'; expected none, all, or some of " + known());
         from = to + 1;
     }
+    if (is_none && (selection.all || !selection.names.empty()))
+        throw Error(ErrorKind::usage, option + ": 'none' stands alone, not with other layers");
     return selection;
 }
 

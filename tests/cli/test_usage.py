@@ -57,9 +57,21 @@ class WrongCommandLines(CliTest):
         self.assert_fails(self.run_program("paint"), USAGE, 'unknown command "paint"')
         self.assert_fails(self.run_program("rendr"), USAGE, 'did you mean "render"?')
         self.assert_fails(self.run_program("--frobnicate"), USAGE, 'unknown option "--frobnicate"')
-        self.assert_fails(self.run_program("help", "render"), USAGE, 'unknown command "help"')
+        self.assert_fails(self.run_program("help", "paint"), USAGE, 'unknown command "paint"')
         self.write("scene.pbrt", TINY)
         self.assert_fails(self.run_program("scene.pbrt"), USAGE, "\"scene.pbrt\" is no command; 'covtrace render FILE' renders a scene")
+
+    def test_help_is_a_word_too(self):
+        for words, option in (((), ()), (("render",), ("render",)), (("compare", "a.exr"), ("compare",))):
+            with self.subTest(words=words):
+                self.assertEqual(self.run_program("help", *words).stdout, self.run_program(*option, "--help").stdout)
+
+    def test_units_and_names_may_have_other_capitals(self):
+        self.rendered("--spp", 1, "--time", "1M30S", "--resolution", "8X6", "--max-memory", "2gb",
+                      "--texture-memory", "50MiB", "--layers", "SAMPLES,n")
+        channels = self.run_program("info", "out.exr").stdout
+        for part in ("8x6", r"\n  samples\n", r"\n  N\n"):
+            self.assertRegex(channels, part)
 
     def test_beginnings_of_options_are_recognised(self):
         self.assert_fails(self.run_program("render", "scene.pbrt", "--env", "1"), USAGE,
@@ -84,14 +96,14 @@ class WrongCommandLines(CliTest):
             "--density": ["even"],
             "--k": ["0", "-1", "x", "nan", "inf", "1e13", "", "3"],  # the last one: not with hybrid
             "--filter": ["none"],
-            "--resolution": ["0x5", "5x0", "-4x4", "640", "640x", "640x360x2", "axb", "640X360", " 64x64", "99999999999x1", ""],
+            "--resolution": ["0x5", "5x0", "-4x4", "640", "640x", "640x360x2", "axb", "640y360", " 64x64", "99999999999x1", ""],
             "--crop": ["0,0,8", "0,0,8,8,8", "a,b,c,d", "4,4,4,8", "8,0,4,8", "0,0,25,16", "-1,0,8,8", "0,0,8,17", ""],
             "--max-depth": ["-1", "x", "2147483648", ""],
             "--seed": ["-1", "x", "1.5", "18446744073709551616"],
             "--threads": ["0", "-1", "x", "5000", ""],
             "--voxels": ["0", "2049", "0x10", "wide"],
             "--isa": ["mmx"],
-            "--texture-memory": ["", "x", "-1", "5X", "5MB", "nan", "inf", "1e30"],
+            "--texture-memory": ["", "x", "-1", "5X", "5MX", "5B", "5MBB", "nan", "inf", "1e30"],
             "--every": ["0", "soon"],
             "--shard": ["0/4", "5/4", "1", "1/0", "a/b", "1/4/4", "-1/4"],
             "--max-memory": ["x", "-1", "5X"],
@@ -100,7 +112,7 @@ class WrongCommandLines(CliTest):
             "--focus": ["0", "-1", "nan", "1e-50", "1e-20"],
             "--fstop": ["0", "-1", "nan", "inf", "1e-50", "1e-38", "1e31"],
             "--progress": ["loud"],
-            "--layers": ["nope", "raw,nope", "raw,", "raw.R"],
+            "--layers": ["nope", "raw,nope", "raw,", "raw.R", "all,none", "none,raw"],
         }
         self.write("scene.pbrt", TINY)
         for option, values in bad.items():
