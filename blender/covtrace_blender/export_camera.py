@@ -68,6 +68,8 @@ class SceneCamera:
     def _object(self):
         if self.scene.camera is None:
             raise RuntimeError("covtrace: the scene has no camera")
+        if self.scene.camera.type != "CAMERA":
+            raise RuntimeError(f"covtrace: the scene's camera, '{self.scene.camera.name}', is of type {self.scene.camera.type}; expected a camera")
         return self.scene.camera.evaluated_get(self.depsgraph)
 
     def matrix(self):

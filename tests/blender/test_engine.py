@@ -130,6 +130,9 @@ class EngineTest(BlenderTest):
                 render("COVTRACE", 1)
         finally:
             os.environ["COVTRACE"] = known or ""
+        self.scene.camera = next(obj for obj in self.scene.objects if obj.type == "MESH")
+        with self.assertRaisesRegex(RuntimeError, "is of type MESH; expected a camera"):
+            render("COVTRACE", 1)
         self.scene.camera = None
         with self.assertRaises(RuntimeError):
             render("COVTRACE", 1)
