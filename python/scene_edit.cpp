@@ -215,7 +215,8 @@ std::vector<Slot> slots_of(SceneDescription&, CameraDescription& camera) {
     std::vector<Slot> slots{number_slot("lensradius", camera.lens_radius),
                             number_slot("focaldistance", camera.focal_distance, 1e-6)};
     // The field of view of a traced lens follows from its surfaces
-    if (!camera.lens) slots.insert(slots.begin(), number_slot("fov", camera.fov, 0.001, 179.999));
+    const double widest = camera.kind == CameraDescription::Kind::spherical ? 360 : 179.999;
+    if (!camera.lens) slots.insert(slots.begin(), number_slot("fov", camera.fov, 0.001, widest));
     return slots;
 }
 

@@ -6,6 +6,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from .export_shaders import numbers
+from .panorama import is_fisheye, panorama_text
 from .placement import placement
 from .shutter import moves_blurred
 
@@ -20,17 +21,17 @@ def _world_to_camera(matrix, turn=TURN):
     return turn @ matrix.normalized().inverted()
 
 
-def _is_whole_panorama(data):
-    """Whether a camera shows all directions, at even angles along both sides of the frame."""
-    of = data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)  # Blender 5 has them itself
-    whole = {"latitude_min": -0.5, "latitude_max": 0.5, "longitude_min": -1, "longitude_max": 1}
-    return getattr(of, "panorama_type", "") == "EQUIRECTANGULAR" and \
-        all(abs(getattr(of, name) - math.pi * share) < 1e-4 for name, share in whole.items())
-
-
 def _exposure(scene):
     """The factor on all light that Cycles has among its settings of the film."""
     return getattr(getattr(scene, "cycles", None), "film_exposure", 1.0)
+
+
+def _aperture(dof):
+    """The parameters of its blades, without which it is round."""
+    is_polygon = dof.aperture_blades >= 3  # Cycles has no fewer blades
+    blades = f' "integer apertureblades" {dof.aperture_blades} "float aperturerotation" {math.degrees(dof.aperture_rotation):.9g}' \
+        if is_polygon else ""
+    return blades + (f' "float apertureratio" {dof.aperture_ratio:.9g}' if abs(dof.aperture_ratio - 1) > 1e-6 else "")
 
 
 KINDS = {"PERSP": "perspective", "ORTHO": "orthographic", "PANO": "spherical"}
@@ -111,13 +112,9 @@ class SceneCamera:
 
     def _left_out_of_lens(self):
         data = self._object().data
-        dof = data.dof
-        if not dof.use_dof:
-            return []
-        if data.type == "PANO":
+        if data.dof.use_dof and data.type == "PANO":
             return ["the camera's depth of field is left out, as it is a panorama"]
-        is_round = dof.aperture_blades < 3 and abs(dof.aperture_ratio - 1) < 1e-6  # Cycles has no fewer blades
-        return [] if is_round else ["the camera's aperture is round; its blades and ratio are left out"]
+        return []
 
     def clip_range(self):
         """(Clip Start, Clip End): distances, along the axis of sight but for panoramas."""
@@ -138,12 +135,12 @@ class SceneCamera:
     def text(self, shutter=None, end=None):
         """shutter: (open, close) in frames; end: its matrix at the closing, where it moves."""
         data = self._object().data
-        if data.type not in KINDS or data.type == "PANO" and not _is_whole_panorama(data):
-            raise RuntimeError("covtrace: of panoramic cameras only equirectangular ones of all directions are supported")
+        if data.type not in KINDS:
+            raise RuntimeError(f"covtrace: cameras of the type {data.type} are not supported")
         times = f"TransformTimes {shutter[0]:.9g} {shutter[1]:.9g}\n" if shutter else ""
-        turn = TURN_OF_PANORAMAS if data.type == "PANO" else TURN
+        turn = TURN_OF_PANORAMAS if data.type == "PANO" and not is_fisheye(data) else TURN
         place = placement("Transform", _world_to_camera(self.matrix(), turn), _world_to_camera(end, turn) if end else None)
-        parameters = ['"string mapping" "equirectangular"'] if data.type == "PANO" else [f'"float screenwindow" [{numbers(self._window())}]']
+        parameters = [panorama_text(data, self.size)] if data.type == "PANO" else [f'"float screenwindow" [{numbers(self._window())}]']
         if data.type == "PERSP":
             parameters.append('"float fov" 90')
         if shutter:
@@ -165,7 +162,7 @@ class SceneCamera:
             distance = -(self.matrix().normalized().inverted() @ at).z
         focal_length = data.lens * 1e-3 if is_perspective else 1.0
         radius = focal_length / (2 * max(data.dof.aperture_fstop, 1e-3))
-        return f'"float lensradius" {radius:.9g} "float focaldistance" {max(distance, 1e-4):.9g}'
+        return f'"float lensradius" {radius:.9g} "float focaldistance" {max(distance, 1e-4):.9g}{_aperture(data.dof)}'
 
 
 def viewport_text(scene, size, view_matrix, window_matrix):

@@ -2,21 +2,12 @@
 
 #include <cmath>
 
+#include "camera/aperture_blades.h"
 #include "core/frame.h"
-#include "core/warp.h"
-#include "light/equal_area.h"
 
 namespace covtrace {
 
 namespace {
-
-/// Coordinates inside the square for ones beyond it: the equal-area map goes on beyond an edge at
-/// the edge's other half.
-Vec2 wrap_equal_area(Vec2 uv) {
-    if (uv.x < 0 || uv.x > 1) uv = {uv.x < 0 ? -uv.x : 2 - uv.x, 1 - uv.y};
-    if (uv.y < 0 || uv.y > 1) uv = {1 - uv.x, uv.y < 0 ? -uv.y : 2 - uv.y};
-    return uv;
-}
 
 /// The smallest window of this aspect around the given one, with the same centre.
 std::array<float, 4> widened(std::array<float, 4> w, float aspect) {
@@ -38,8 +29,9 @@ Camera::Camera(const CameraDescription& description, int width, int height)
       shutter_open_(description.shutter_open),
       shutter_close_(description.shutter_close) {
     set_window(width, height);
-    if (description.kind != CameraDescription::Kind::spherical &&
-        !description.camera_to_world.is_animated())
+    if (description.kind == CameraDescription::Kind::spherical)
+        panorama_.emplace(description, width, height, origin_, per_pixel_);
+    else if (!description.camera_to_world.is_animated())
         sensor_ = sensor_at({});
 }
 
@@ -89,18 +81,20 @@ CameraRay Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
     if (lens_) return lens_ray(film, lens, shutter);
     const Vec2 s = slope(film);
     Vec3 origin, direction{0, 0, 1};
-    if (description_.kind == CameraDescription::Kind::spherical)
-        direction = spherical_direction(film);
+    if (panorama_)
+        direction = panorama_->direction(film);
     else if (description_.kind == CameraDescription::Kind::perspective)
         direction = {s.x, s.y, 1};
     else
         origin = {s.x, s.y, 0};
     if (lens_radius_ > 0) {
         const Vec3 focus = origin + direction * focal_distance_;
-        const Vec2 l = square_to_disc(lens) * lens_radius_;
+        const Vec2 l = aperture_point(description_.blades, lens) * lens_radius_;
         origin += Vec3{l.x, l.y, 0};
         direction = focus - origin;
     }
+    if (panorama_ && !panorama_->sees(film))
+        return {in_world(origin, direction, shutter), 0, false};
     return {in_world(origin, direction, shutter)};
 }
 
@@ -141,32 +135,15 @@ Camera::Placement Camera::placement(const Transform& t) {
     return {t.point({}), t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
 
-Vec3 Camera::spherical_direction(Vec2 film) const {
-    const Vec2 uv{film.x / static_cast<float>(width_), film.y / static_cast<float>(height_)};
-    if (description_.mapping == CameraDescription::Mapping::equal_area) {
-        const Vec3 w = equal_area_square_to_sphere(wrap_equal_area(uv));
-        return {w.x, w.z, w.y};
-    }
-    const float theta = kPi * uv.y, phi = 2 * kPi * uv.x;
-    return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
-}
-
 /// The sensor of a spherical camera: a pinhole that looks along the ray, with the map's own scale
 /// there.
 SensorGeometry Camera::spherical_sensor(const Ray& ray, const Transform& camera_to_world) const {
     const Vec3 w = normalize(camera_to_world.inverse().vector(ray.direction));
-    Vec2 film;
-    if (description_.mapping == CameraDescription::Mapping::equal_area) {
-        film = equal_area_sphere_to_square({w.x, w.z, w.y});
-    } else {
-        const float turn = std::atan2(w.z, w.x) / (2 * kPi);
-        film = {turn < 0 ? turn + 1 : turn, std::acos(std::clamp(w.y, -1.0f, 1.0f)) / kPi};
-    }
-    film = {film.x * static_cast<float>(width_), film.y * static_cast<float>(height_)};
+    const Vec2 film = panorama_->film(w);
     constexpr float kStep = 0.25f;  // pixels
     const auto along = [&](Vec2 step) {
-        const Vec3 ahead = normalize(camera_to_world.vector(spherical_direction(film + step)));
-        const Vec3 behind = normalize(camera_to_world.vector(spherical_direction(film - step)));
+        const Vec3 ahead = normalize(camera_to_world.vector(panorama_->direction(film + step)));
+        const Vec3 behind = normalize(camera_to_world.vector(panorama_->direction(film - step)));
         return (ahead - behind) / (2 * kStep);
     };
     const Vec3 x = along({kStep, 0}), y = along({0, kStep});
@@ -186,7 +163,7 @@ float Camera::half_pixel(float distance) const {
         case CameraDescription::Kind::orthographic:
             return 0.5f * per_pixel_.x * length(still_.x);
         case CameraDescription::Kind::spherical:
-            return 0.5f * kPi / static_cast<float>(height_) * distance;
+            return 0.5f * panorama_->pixel_angle() * distance;
         case CameraDescription::Kind::perspective:
             break;
     }
@@ -200,7 +177,7 @@ SensorGeometry Camera::sensor(const Ray& ray) const {
 SensorGeometry Camera::sensor_at(const Ray& ray) const {
     Transform storage;
     const Transform& camera_to_world = to_world(ray.time, storage);
-    if (description_.kind == CameraDescription::Kind::spherical) {
+    if (panorama_) {
         SensorGeometry g = spherical_sensor(ray, camera_to_world);
         g.shutter = shutter_close_ - shutter_open_;
         g.velocity = description_.camera_to_world.velocity(ray.origin, ray.time);
@@ -215,7 +192,7 @@ SensorGeometry Camera::sensor_at(const Ray& ray) const {
     g.right = normalize(x);
     g.down = normalize(y);
     g.forward = normalize(z);
-    g.lens_radius = lens_radius_ * unit;
+    g.lens_radius = lens_radius_ * radius_of_like_disc(description_.blades) * unit;
     g.focal_distance = focal_distance_ * unit;
     g.orthographic = description_.kind == CameraDescription::Kind::orthographic;
     g.pixels_per_x = 1 / (g.orthographic ? length(x) : length(x) / unit);

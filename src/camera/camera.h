@@ -7,6 +7,7 @@
 
 #include "camera/exit_pupil.h"
 #include "camera/lens_system.h"
+#include "camera/panorama.h"
 #include "core/transform.h"
 #include "geometry/hit.h"
 #include "scene/scene_description.h"
@@ -14,7 +15,8 @@
 namespace covtrace {
 
 /// The linear map of a camera around one of its rays: that of a thin lens with perspective or
-/// parallel rays. A spherical camera counts as a pinhole that looks along the ray.
+/// parallel rays. A spherical camera counts as a pinhole that looks along the ray, an aperture of
+/// blades as the disc of the same variance.
 struct SensorGeometry {
     /// Unit world directions of increasing pixel x, of increasing pixel y, and of the optical axis.
     Vec3 right, down, forward;
@@ -45,9 +47,9 @@ class Camera {
     Camera(const CameraDescription& description, int width, int height);
 
     /// The ray through a film position in pixels (y down from the top of the full frame), a lens
-    /// position in [0, 1)^2, which is mapped to the disc, and a shutter position in [0, 1). Through
-    /// a traced lens its weight makes the mean over the lens the irradiance on the film, over that
-    /// which the description has for its middle.
+    /// position in [0, 1)^2, which is mapped to the aperture, and a shutter position in [0, 1).
+    /// Through a traced lens its weight makes the mean over the lens the irradiance on the film,
+    /// over that which the description has for its middle.
     CameraRay generate_ray(Vec2 film, Vec2 lens, float shutter) const;
     /// The rays one pixel to the right and one below it, by the same place in the lens.
     std::array<Ray, 2> rays_beside(Vec2 film, Vec2 lens, float shutter) const;
@@ -84,8 +86,6 @@ class Camera {
 
     const Transform& to_world(float time, Transform& storage) const;
     SensorGeometry sensor_at(const Ray& ray) const;
-    /// Direction of a film position of a spherical camera, in camera space.
-    Vec3 spherical_direction(Vec2 film) const;
     SensorGeometry spherical_sensor(const Ray& ray, const Transform& camera_to_world) const;
 
     /// The camera's linear map to the world at one time, in single precision.
@@ -102,6 +102,7 @@ class Camera {
     Vec2 origin_;     // camera-space slope (or position) of film position (0, 0)
     Vec2 per_pixel_;  // change of camera-space slope (or position) per pixel; y is negative
     float lens_radius_ = 0, focal_distance_ = 1;
+    std::optional<Panorama> panorama_;        // of a spherical camera
     std::shared_ptr<const TracedLens> lens_;  // none: thin, or a pinhole
     float shutter_open_ = 0, shutter_close_ = 1;
     std::optional<SensorGeometry> sensor_;  // set where it is the same for all rays

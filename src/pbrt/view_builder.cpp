@@ -47,18 +47,7 @@ std::string owner(std::string_view kind, const Entity& e) {
     return std::string(kind) + " " + in_quotes(e.type);
 }
 
-void spherical_camera(Entity& e, CameraDescription& camera) {
-    camera.kind = CameraDescription::Kind::spherical;
-    const std::string mapping = e.parameters.text("mapping", "equalarea");
-    if (mapping == "equirectangular")
-        camera.mapping = CameraDescription::Mapping::equirectangular;
-    else if (mapping != "equalarea")
-        e.refuse("mapping", unknown_name("mapping of a spherical camera", mapping,
-                                         {"equalarea", "equirectangular"}));
-    e.parameters.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
-}
-
-/// The window of a perspective or orthographic camera, as x0, x1, y0, y1; none where it has none.
+/// The window of a camera, as x0, x1, y0, y1; none where it has none.
 std::optional<std::array<float, 4>> screen_window(Entity& e, WarningLog& log) {
     const std::vector<float> window = e.parameters.numbers("screenwindow");
     if (window.empty()) return std::nullopt;
@@ -75,6 +64,90 @@ std::optional<std::array<float, 4>> screen_window(Entity& e, WarningLog& log) {
     return std::array{window[0], window[1], window[2], window[3]};
 }
 
+void read_window(Entity& e, CameraDescription& camera, WarningLog& log) {
+    if (e.parameters.has("frameaspectratio"))
+        camera.frame_aspect_ratio = within(e, "frameaspectratio", e.positive("frameaspectratio", 0),
+                                           kFlattest, 1 / kFlattest);
+    camera.screen_window = screen_window(e, log);
+}
+
+/// A part of a sphere from two angles in degrees, the lower one first; the whole where it is not
+/// given.
+std::array<float, 2> part_of_sphere(Entity& e, std::string_view name, std::array<float, 2> whole) {
+    const std::vector<float> part = e.parameters.numbers(name);
+    if (part.empty()) return whole;
+    constexpr float kLeast = 1e-3f;  // degrees; still a part in single precision
+    if (part.size() != 2 ||
+        !(whole[0] <= part[0] && part[0] + kLeast <= part[1] && part[1] <= whole[1])) {
+        std::ostringstream text;
+        text << "parameter " << in_quotes(name) << " expects two angles between " << whole[0]
+             << " and " << whole[1] << " degrees, the lower one first";
+        e.refuse(name, text.str());
+    }
+    return {part[0], part[1]};
+}
+
+void spherical_camera(Entity& e, CameraDescription& camera, WarningLog& log) {
+    using Mapping = CameraDescription::Mapping;
+    constexpr std::array<std::pair<std::string_view, Mapping>, 4> kMappings{
+        {{"equalarea", Mapping::equal_area},
+         {"equirectangular", Mapping::equirectangular},
+         {"equidistant", Mapping::equidistant},
+         {"equisolid", Mapping::equisolid}}};
+    camera.kind = CameraDescription::Kind::spherical;
+    const std::string mapping = e.parameters.text("mapping", "equalarea");
+    const auto* found = std::find_if(kMappings.begin(), kMappings.end(),
+                                     [&](const auto& known) { return mapping == known.first; });
+    if (found == kMappings.end())
+        e.refuse("mapping",
+                 unknown_name("mapping of a spherical camera", mapping,
+                              {"equalarea", "equirectangular", "equidistant", "equisolid"}));
+    camera.mapping = found->second;
+    if (camera.mapping == Mapping::equidistant || camera.mapping == Mapping::equisolid) {
+        camera.fov = e.positive("fov", 180);
+        if (camera.fov > 360 || camera.fov < 1e-3f)
+            e.refuse("fov", "parameter \"fov\" of a fisheye must be between 0.001 and 360 degrees");
+        read_window(e, camera, log);
+    } else if (camera.mapping == Mapping::equirectangular) {
+        const auto [left, right] = part_of_sphere(e, "longitude", {0, 360});
+        const auto [bottom, top] = part_of_sphere(e, "latitude", {-90, 90});
+        camera.sphere_part = {left / 360, right / 360, (90 - top) / 180, (90 - bottom) / 180};
+    }
+    e.parameters.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
+}
+
+/// The blades of a thin lens' aperture, which pbrt-v4 has not.
+ApertureBlades aperture_blades(Entity& e) {
+    ApertureBlades blades;
+    blades.count = e.parameters.integer("apertureblades", 0);
+    if (blades.count != 0 && (blades.count < 3 || blades.count > 1000))
+        e.refuse("apertureblades", "parameter \"apertureblades\" expects 0 or 3 to 1000 blades");
+    const float turn = e.parameters.number("aperturerotation", 0);
+    at_most(e, "aperturerotation", std::abs(turn), 1e4f);
+    blades.rotation = turn * kPi / 180;
+    blades.ratio = within(e, "apertureratio", e.positive("apertureratio", 1), 1e-3f, 1e3f);
+    return blades;
+}
+
+void thin_lens_camera(Entity& e, CameraDescription& camera, WarningLog& log) {
+    ParameterList& p = e.parameters;
+    camera.kind = e.type == "perspective" ? CameraDescription::Kind::perspective
+                                          : CameraDescription::Kind::orthographic;
+    if (e.type == "perspective") camera.fov = p.number("fov", 90);
+    if (!(camera.fov > 0 && camera.fov < 180))
+        e.refuse("fov", "parameter \"fov\" must be between 0 and 180 degrees");
+    // The limit is where single precision tells no directions apart any more.
+    constexpr float kNarrowest = 1e-6f;
+    if (camera.fov < kNarrowest)
+        e.refuse("fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
+    camera.lens_radius = p.number("lensradius", 0);
+    if (camera.lens_radius < 0)
+        e.refuse("lensradius", "parameter \"lensradius\" must not be negative");
+    camera.focal_distance = e.positive("focaldistance", 1e6f);
+    camera.blades = aperture_blades(e);
+    read_window(e, camera, log);
+}
+
 void build_camera(ViewEntities& view, BuildContext& context) {
     Entity& e = view.camera;
     ParameterList& p = e.parameters;
@@ -87,27 +160,11 @@ void build_camera(ViewEntities& view, BuildContext& context) {
         e.refuse(p.has("shutterclose") ? "shutterclose" : "shutteropen",
                  "the shutter never opens: expected shutteropen < shutterclose");
     if (e.type == "perspective" || e.type == "orthographic") {
-        camera.kind = e.type == "perspective" ? CameraDescription::Kind::perspective
-                                              : CameraDescription::Kind::orthographic;
-        if (e.type == "perspective") camera.fov = p.number("fov", 90);
-        if (!(camera.fov > 0 && camera.fov < 180))
-            e.refuse("fov", "parameter \"fov\" must be between 0 and 180 degrees");
-        // The limit is where single precision tells no directions apart any more.
-        constexpr float kNarrowest = 1e-6f;
-        if (camera.fov < kNarrowest)
-            e.refuse("fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
-        camera.lens_radius = p.number("lensradius", 0);
-        if (camera.lens_radius < 0)
-            e.refuse("lensradius", "parameter \"lensradius\" must not be negative");
-        camera.focal_distance = e.positive("focaldistance", 1e6f);
-        if (p.has("frameaspectratio"))
-            camera.frame_aspect_ratio = within(
-                e, "frameaspectratio", e.positive("frameaspectratio", 0), kFlattest, 1 / kFlattest);
-        camera.screen_window = screen_window(e, context.log);
+        thin_lens_camera(e, camera, context.log);
     } else if (e.type == "realistic") {
         build_realistic_camera(e, view.film, context);
     } else if (e.type == "spherical") {
-        spherical_camera(e, camera);
+        spherical_camera(e, camera, context.log);
     } else {
         throw unknown_type_error(e.where, "camera", e.type,
                                  {"perspective", "orthographic", "realistic", "spherical"});

@@ -161,23 +161,35 @@ struct InstanceDescription {
 
 // ---- view
 
+/// The aperture of a thin lens: a disc, or a regular polygon with its corners on the disc's rim.
+struct ApertureBlades {
+    int count = 0;       ///< corners, 3 or more; 0: a disc
+    float rotation = 0;  ///< radians, from x to y of camera space; 0: the right edge is upright
+    float ratio = 1;     ///< how many times narrower than high it is, for a disc of ratio 1
+};
+
 struct CameraDescription {
     enum class Kind { perspective, orthographic, spherical };
     /// The directions of a spherical camera over the film, top row first: the equal-area octahedral
-    /// map, or polar angle by azimuth; y is the pole.
-    enum class Mapping { equal_area, equirectangular };
+    /// map, or polar angle by azimuth, where y is the pole; or those of a fisheye (Panorama).
+    enum class Mapping { equal_area, equirectangular, equidistant, equisolid };
     Kind kind = Kind::perspective;
     AnimatedTransform camera_to_world;  ///< x right, y up, z forward in camera space
-    float fov = 90;                     ///< of the shorter axis, unless the screen window is given
-    float frame_aspect_ratio = 0;       ///< 0: from the resolution
+    /// Degrees: of the shorter axis, unless the screen window is given; of a fisheye's circle.
+    float fov = 90;
+    float frame_aspect_ratio = 0;                       ///< 0: from the resolution
     std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
     /// Whether the window is stretched over the film; else it is widened to the film's aspect.
     bool window_fills_film = true;
     Mapping mapping = Mapping::equal_area;
+    /// The part of the equirectangular map that is shown: its left, right, top and bottom, in
+    /// fractions of the whole.
+    std::array<float, 4> sphere_part{0, 1, 0, 1};
     /// Irradiance that a radiance of 1 gives in the middle of the film; pi (radius / distance)^2
     /// for real lenses.
     float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
+    ApertureBlades blades;  ///< of a thin lens
     /// A lens of several surfaces that rays are traced through. The numbers above are those of the
     /// thin lens that stands for it where its covariance is predicted: `lens_radius` is that of the
     /// entrance pupil, which its stop is opened for; `focal_distance` is measured from the film.

@@ -28,14 +28,22 @@ struct ShapeCounts {
     }
 };
 
+std::string mapping_text(const CameraDescription& camera) {
+    using Mapping = CameraDescription::Mapping;
+    if (camera.mapping == Mapping::equal_area) return "spherical, equal-area";
+    if (camera.mapping == Mapping::equirectangular) return "spherical, equirectangular";
+    std::ostringstream out;
+    out << (camera.mapping == Mapping::equidistant ? "equidistant" : "equisolid")
+        << " fisheye, field of view " << camera.fov;
+    return out.str();
+}
+
 std::string kind_text(const CameraDescription& camera) {
     switch (camera.kind) {
         case CameraDescription::Kind::orthographic:
             return "orthographic";
         case CameraDescription::Kind::spherical:
-            return camera.mapping == CameraDescription::Mapping::equal_area
-                       ? "spherical, equal-area"
-                       : "spherical, equirectangular";
+            return mapping_text(camera);
         default:
             break;
     }

@@ -138,7 +138,27 @@ TEST(SceneView, SphericalCameras) {
     EXPECT_EQ(scene.camera.kind, CameraDescription::Kind::spherical);
     EXPECT_EQ(scene.camera.mapping, Mapping::equirectangular);
     EXPECT_TRUE(contains(options_error("Camera \"spherical\" \"string mapping\" \"flat\""),
-                         "expected one of equalarea, equirectangular"));
+                         "expected one of equalarea, equirectangular, equidistant, equisolid"));
+    const auto part = read_options(
+        "Camera \"spherical\" \"string mapping\" \"equirectangular\" "
+        "\"float longitude\" [ 90 270 ] \"float latitude\" [ -45 90 ]");
+    EXPECT_EQ(part.camera.sphere_part, (std::array{0.25f, 0.75f, 0.0f, 0.75f}));
+    const auto fisheye = read_options(
+        "Camera \"spherical\" \"string mapping\" \"equisolid\" \"float fov\" 220 "
+        "\"float screenwindow\" [ -2 2 -1 1 ]");
+    EXPECT_EQ(fisheye.camera.mapping, Mapping::equisolid);
+    EXPECT_EQ(fisheye.camera.fov, 220);
+    EXPECT_TRUE(fisheye.camera.screen_window.has_value());
+}
+
+TEST(SceneView, ThinLensesMayHaveBlades) {
+    const auto scene = read_options(
+        "Camera \"perspective\" \"float lensradius\" 1 \"integer apertureblades\" 6 "
+        "\"float aperturerotation\" 90 \"float apertureratio\" 2");
+    EXPECT_EQ(scene.camera.blades.count, 6);
+    EXPECT_NEAR(scene.camera.blades.rotation, kPi / 2, 1e-6f);
+    EXPECT_EQ(scene.camera.blades.ratio, 2);
+    EXPECT_EQ(read_options("Camera \"perspective\"").camera.blades.count, 0);
 }
 
 constexpr const char* kTwoLenses = R"(# radius thickness index diameter
@@ -250,6 +270,13 @@ TEST(SceneView, ErrorsNameThePlace) {
         {"Camera \"perspective\" \"float focaldistance\" 0", "must be greater than 0"},
         {"Camera \"perspective\" \"float lensradius\" -1", "must not be negative"},
         {"Camera \"perspective\" \"float screenwindow\" [ 1 2 3 3 ]", "expects x0 < x1"},
+        {"Camera \"perspective\" \"integer apertureblades\" 2", "expects 0 or 3 to 1000 blades"},
+        {"Camera \"perspective\" \"float apertureratio\" 0", "must be greater than 0"},
+        {"Camera \"perspective\" \"float aperturerotation\" 1e30", "out of range"},
+        {"Camera \"spherical\" \"string mapping\" \"equidistant\" \"float fov\" 400",
+         "between 0.001 and 360 degrees"},
+        {"Camera \"spherical\" \"string mapping\" \"equirectangular\" \"float latitude\" [ 9 9 ]",
+         "expects two angles between -90 and 90 degrees, the lower one first"},
         {"Camera \"pinhole\"", "pbrt-v3"},
         {"Camera \"fisheye\"",
          "test.pbrt:1:1: unknown camera \"fisheye\"; expected one of perspective"},

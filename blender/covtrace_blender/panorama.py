@@ -1,0 +1,42 @@
+"""Panoramic cameras as parameters of a spherical one."""
+
+import math
+
+FISHEYES = {"FISHEYE_EQUIDISTANT": "equidistant", "FISHEYE_EQUISOLID": "equisolid"}
+
+
+def _settings(data):
+    """Who has the settings of panoramas: Blender 5 itself, before it Cycles."""
+    return data if hasattr(data, "panorama_type") else getattr(data, "cycles", None)
+
+
+def is_fisheye(data):
+    return getattr(_settings(data), "panorama_type", "") in FISHEYES
+
+
+def panorama_text(data, size):
+    """The parameters of a panoramic camera for a frame of this size in pixels. RuntimeError for those without counterpart."""
+    of = _settings(data)
+    kind = getattr(of, "panorama_type", "")
+    if kind == "EQUIRECTANGULAR":
+        west, east = (180 + math.degrees(angle) for angle in (of.longitude_min, of.longitude_max))
+        south, north = (math.degrees(angle) for angle in (of.latitude_min, of.latitude_max))
+        if not (west < east and south < north):
+            raise RuntimeError("covtrace: the camera's panorama is mirrored: expected a smaller minimum than maximum of latitude and longitude")
+        return f'"string mapping" "equirectangular" "float longitude" [{max(west, 0):.7g} {min(east, 360):.7g}] ' \
+               f'"float latitude" [{max(south, -90):.7g} {min(north, 90):.7g}]'
+    if kind not in FISHEYES:
+        raise RuntimeError(f"covtrace: panoramas of the type {kind} are not supported; expected equirectangular ones or fisheyes")
+    x, y = _half_frame(data, of, size) if kind == "FISHEYE_EQUISOLID" else (1, 1)
+    return f'"string mapping" "{FISHEYES[kind]}" "float fov" {math.degrees(of.fisheye_fov):.9g} ' \
+           f'"float screenwindow" [{-x:.9g} {x:.9g} {-y:.9g} {y:.9g}]'
+
+
+def _half_frame(data, of, size):
+    """Half the frame's sides over the radius of its circle, from the lens and the sensor, both in mm."""
+    radius = 2 * of.fisheye_lens * math.sin(of.fisheye_fov / 4)
+    width, height = size
+    is_width = data.sensor_fit == "HORIZONTAL" or data.sensor_fit == "AUTO" and width >= height
+    of_sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    half = of_sensor / 2 / radius
+    return (half, half * height / width) if is_width else (half * width / height, half)
