@@ -137,21 +137,31 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
     return true;
 }
 
+bool PathTracer::look_at(SampledLight& light) const {
+    const LitPlace& place = light.place;
+    const Lights::Sky sky = scene_.lights.sky(place.position, place.normal, light.ray.direction,
+                                              place.sky_cell, light.ray.kind);
+    light.radiance = sky.radiance;
+    light.pdf = sky.pdf;
+    return light.pdf > 0 && !is_black(light.radiance);
+}
+
 void PathTracer::add_sampled_light(bool occluded) {
     ++result_.rays.shadow;
     // No way through panes leads to a light without extent
-    if (occluded && samples_through_panes_ && sampled_light_->path_pdf > 0) return;
-    SampledLight light = *sampled_light_;
-    sampled_light_.reset();
-    if (occluded) return;
-    if (light.is_to_be_looked_at) {
-        const LitPlace& place = light.place;
-        const Lights::Sky sky = scene_.lights.sky(place.position, place.normal, light.ray.direction,
-                                                  place.sky_cell, light.ray.kind);
-        if (!(sky.pdf > 0) || is_black(sky.radiance)) return;
-        light.radiance = sky.radiance;
-        light.pdf = sky.pdf;
+    const bool goes_through_panes =
+        occluded && samples_through_panes_ && sampled_light_->path_pdf > 0;
+    if (occluded && !goes_through_panes) {
+        sampled_light_.reset();
+        return;
     }
+    if (sampled_light_->is_to_be_looked_at && !look_at(*sampled_light_)) {
+        sampled_light_.reset();
+        return;
+    }
+    if (goes_through_panes) return;
+    const SampledLight light = *sampled_light_;
+    sampled_light_.reset();
     const Rgb visible =
         visibility(scene_, light.ray, light.distance, light.medium, result_.rays.shadow);
     if (is_black(visible)) return;

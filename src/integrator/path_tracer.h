@@ -211,6 +211,8 @@ class PathTracer {
     /// that the part is scattered into. Returns false for no light.
     bool keep_light(LightSample light, const BsdfValue& value, Ray shadow, MediumId medium,
                     PathVertex* vertex);
+    /// Looks up light and density of a sample that is to be looked at. Returns false for no light.
+    bool look_at(SampledLight& light) const;
     /// Whether shadow rays alone meet something between the last vertex and light that the path
     /// has found at a hit, or in the sky: it counts where it can be sampled (docs/decisions/0112).
     bool is_shadowed(const SurfaceHit* hit);
