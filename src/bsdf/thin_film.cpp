@@ -71,6 +71,10 @@ Rgb film_reflectance(const ThinFilm& film, float cos_i, Rgb base) {
         for (size_t polarisation = 0; polarisation < 2; ++polarisation) {
             // A round within the film multiplies the amplitude by q, and turns it by the path
             const float reflected = sqr(first[polarisation]), through = 1 - reflected;
+            if (!(through > 0)) {  // rounded to a mirror: the sum has no value
+                sum[c] += 0.5f;
+                continue;
+            }
             const float q = -first[polarisation] * second[polarisation];
             const float later = sqr(through * second[polarisation]) / (1 - sqr(q));
             const float interference =

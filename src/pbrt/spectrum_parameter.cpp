@@ -49,12 +49,13 @@ Spectrum from_file(const std::string& name, const SourceLocation& where, BuildCo
 }
 
 constexpr double kHeliumLine = 587.6;
-constexpr float kLargestIndex = 1e6f;  // the squares of its squares must be numbers
+// The squares of their squares must be numbers, and those of their inverses
+constexpr float kSmallestIndex = 1e-6f, kLargestIndex = 1e6f;
 
 /// The index at a wavelength in nanometres; 1 where there is none, as in pbrt.
 float index_at(const Spectrum& index, float wavelength) {
     const auto n = static_cast<float>(index.at(double(wavelength)));
-    return std::min(n > 0 ? n : 1, kLargestIndex);
+    return std::clamp(n > 0 ? n : 1, kSmallestIndex, kLargestIndex);
 }
 
 }  // namespace
@@ -165,6 +166,9 @@ RefractiveIndex refractive_index(ParameterList& parameters, std::string_view nam
     if (eta > kLargestIndex)
         throw Error(ErrorKind::scene, p->where,
                     "parameter " + in_quotes(p->name) + " is too large; expected at most 1e6");
+    if (eta < kSmallestIndex)
+        throw Error(ErrorKind::scene, p->where,
+                    "parameter " + in_quotes(p->name) + " is too small; expected at least 1e-6");
     if (!varying) return {eta, nullptr};
     return {eta, dispersion_of([&](float w) { return index_at(*varying, w); }, eta)};
 }

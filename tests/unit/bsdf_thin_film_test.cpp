@@ -142,7 +142,7 @@ TEST(ThinFilm, OfClearGlassReflectsWhatDoesNotComeThrough) {
 }
 
 TEST(ThinFilm, ReflectsAtMostAllAndNothingThatIsNoNumber) {
-    for (const float eta : {0.5f, 1.0f, 1.3f, 3.0f})
+    for (const float eta : {1e-6f, 0.5f, 1.0f, 1.3f, 3.0f, 1e6f})
         for (const float thickness : {0.0f, 1.0f, 90.0f, 500.0f, 1e9f})
             for (const float base : {0.0f, 0.04f, 0.9f, 1.0f})
                 for (const float cosine : {0.0f, 1e-4f, 0.3f, 1.0f}) {

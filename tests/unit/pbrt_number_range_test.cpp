@@ -84,6 +84,12 @@ TEST(SceneNumberRange, IndicesOfRefraction) {
                          "test.pbrt:2:28: parameter \"interface.eta\" is too large"));
     EXPECT_TRUE(contains(world_error(R"(Material "dielectric" "float eta" 1e7)"), "too large"));
     EXPECT_NO_THROW(read_world(R"(Material "dielectric" "float eta" 1e6)"));
+    for (const char* name : {"eta", "filmeta"}) {
+        const std::string material =
+            std::string("Material \"dielectric\" \"float filmthickness\" 300 \"float ") + name;
+        EXPECT_TRUE(contains(world_error(material + "\" 1e-7"), "too small"));
+        EXPECT_NO_THROW(read_world(material + "\" 1e-6"));
+    }
 }
 
 }  // namespace
