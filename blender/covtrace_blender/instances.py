@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from . import export_meshes
+from .placement import is_finite
 from .shutter import has_blurred_shape, is_blurred, shutter_times
 
 
 class Instances:
-    """The base of an exporter with engine, depsgraph, scene, frame, camera and volume_objects as SceneExporter has them. is_preview: whether it is for a
-    viewport; shutter: (open, close) in frames, or None; still: matrices by key of what is not blurred; still_shapes, closing: places of
-    vertices by name."""
+    """The base of an exporter with engine, depsgraph, scene, frame, camera, warn and volume_objects as SceneExporter has them. is_preview:
+    whether it is for a viewport; shutter: (open, close) in frames, or None; still: matrices by key of what is not blurred; still_shapes,
+    closing: places of vertices by name."""
 
     def __init__(self, engine, depsgraph, camera):
         self.engine, self.depsgraph, self.scene, self.camera = engine, depsgraph, depsgraph.scene, camera
@@ -65,5 +66,8 @@ class Instances:
     def instances(self):
         for instance in self.depsgraph.object_instances:
             if instance.show_self or instance.show_particles and instance.object.particle_systems:
+                if not is_finite(instance.matrix_world):
+                    self.warn(f"object '{instance.object.name}' has a place or a size that is not finite and is left out")
+                    continue
                 parent = instance.parent.name_full if instance.parent else ""
                 yield (instance.object.name_full, parent, tuple(instance.persistent_id)), instance

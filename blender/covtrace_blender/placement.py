@@ -1,11 +1,17 @@
 """Transforms of Blender as text of pbrt."""
 
+import math
+
 import numpy as np
 
 from .export_shaders import numbers
 
 LEAST_DETERMINANT = 1e-30
 FLATTEST = 1e-7  # the extent that is given to what has none along one axis, of its largest
+
+
+def is_finite(matrix):
+    return math.isfinite(sum(sum(row) for row in matrix))
 
 
 def with_extent(matrix):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from . import export_meshes
+from .placement import with_extent
 
 # In one atlas of a picture, and of a viewport.
 MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS = 1 << 22, 1 << 19
@@ -30,7 +31,8 @@ class Placements:
 
     def add(self, instance):
         key = self.key(instance.object)
-        self._matrices.setdefault(key, []).append(np.array(instance.matrix_world))
+        matrix = instance.matrix_world
+        self._matrices.setdefault(key, []).append(np.array(with_extent(matrix) or matrix))
         if instance.is_instance:
             self._instanced.add(key)
 

@@ -69,6 +69,38 @@ class ObjectsTest(BlenderTest):
         self.assertEqual(self.export().count('Shape "plymesh"'), 2)
         self.assert_silhouettes_as_cycles()
 
+    def test_what_is_scaled_flat_has_places_in_the_world(self):
+        """Displacement along the world's normal, and colours by the place, take the matrix' inverse."""
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=0.7)
+        bpy.context.object.scale = (1, 1, 0)
+        m = self.black()
+        bpy.context.object.data.materials.append(m)
+        tree = m.node_tree
+        place, displacement = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeDisplacement")
+        tree.links.new(place.outputs["Position"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+        displacement.space, displacement.inputs["Height"].default_value = "WORLD", 0.7
+        tree.links.new(displacement.outputs["Displacement"], tree.nodes["Material Output"].inputs["Displacement"])
+        (m if hasattr(m, "displacement_method") else m.cycles).displacement_method = "DISPLACEMENT"
+        bpy.context.view_layer.update()
+        text = self.export()
+        self.assertEqual(text.count('Shape "plymesh"'), 1)
+        self.assertIn('"imagemap"', text)
+        self.assertEqual(self.warnings, [])
+
+    def test_what_stands_nowhere_is_left_out(self):
+        for number, values in enumerate(({}, {"location": (math.nan, 0, 0)}, {"scale": (1, math.nan, 1)})):
+            cube = self.cube()
+            cube.name = f"cube {number}"
+            for name, value in values.items():
+                setattr(cube, name, value)
+        bpy.ops.object.light_add(type="AREA")
+        bpy.context.object.name, bpy.context.object.scale = "lamp", (math.nan, 1, 1)
+        bpy.context.view_layer.update()
+        text = self.export()
+        self.assertEqual((text.count('Shape "plymesh"'), text.count("AreaLightSource")), (1, 0))
+        self.assertEqual(self.warnings, [f"object '{name}' has a place or a size that is not finite and is left out"
+                                         for name in ("cube 1", "cube 2", "lamp")])
+
     def test_geometry_nodes_and_modifiers_are_evaluated(self):
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=2.4)
         grid = bpy.context.object
