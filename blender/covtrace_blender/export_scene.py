@@ -18,7 +18,7 @@ from .export_points import Spheres, spheres
 from .export_volumes import Varying, has_volume, is_smoke_domain
 from .instances import Instances
 from .media import Volumes
-from .node_signature import hangs_on_world
+from .node_signature import hangs_on_world, scatters_through, tree_of
 from .owner import Owner, asks_for_random, random_of
 from .part import Part, write_parts
 from .photometric_images import PhotometricImages
@@ -90,7 +90,8 @@ class SceneExporter(Instances):
         self._write_world()
         self._look_at_instances()
         self._look_at_bodies()
-        self.visibility = Visibility(self.depsgraph.view_layer, Clipping(None if self.is_preview else self.camera), self.picture)
+        self.visibility = Visibility(self.depsgraph.view_layer, Clipping(None if self.is_preview else self.camera), self.picture,
+                                     any(scatters_through(tree) for tree in self._trees()))
         self.volumes = self._find_volumes()
         self._write_objects(moving)
         self.materials.baked.keep()
@@ -287,6 +288,10 @@ class SceneExporter(Instances):
         if self.layer.material_override is not None:
             return [self.layer.material_override] * max(1, len(obj.material_slots))
         return [s.material for s in obj.material_slots] if self.is_own(obj) else list(obj.data.materials)
+
+    def _trees(self):
+        """The trees of nodes of all materials of the layer."""
+        return {tree_of(m) for _, instance in self.instances() if instance.object.type in WRITTEN for m in self._materials(instance.object)} - {None}
 
     def _random_of(self, instance):
         """The random number that the materials of an instance ask for; None where none does."""

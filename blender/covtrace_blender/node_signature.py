@@ -24,6 +24,24 @@ def hangs_on_world(tree):
     return any(node.type in ("NEW_GEOMETRY", "CAMERA", "WIREFRAME", "BEVEL") or node.type == "TEX_COORD" and node.object for node in all_nodes(tree))
 
 
+def _is_set(node, name):
+    """Whether an input, if the node has it, is linked or above 0."""
+    socket = node.inputs.get(name)
+    return socket is not None and (socket.is_linked or socket.default_value > 0)
+
+
+def scatters_through(tree):
+    """Whether light that passes surfaces of this shader is scattered, as by leaves, strands and frosted glass."""
+    for node in all_nodes(tree):
+        if node.type in ("BSDF_TRANSLUCENT", "BSDF_HAIR", "BSDF_HAIR_PRINCIPLED"):
+            return True
+        is_glass = node.type in ("BSDF_GLASS", "BSDF_REFRACTION") or node.type == "BSDF_PRINCIPLED" and (
+            _is_set(node, "Transmission") or _is_set(node, "Transmission Weight"))
+        if is_glass and getattr(node, "distribution", "") != "SHARP" and (_is_set(node, "Roughness") or _is_set(node, "Transmission Roughness")):
+            return True
+    return False
+
+
 # Properties of nodes that change no picture.
 _LAYOUT = {"location", "location_absolute", "width", "height", "width_hidden", "label", "select", "hide", "color", "color_tag",
            "show_options", "show_preview", "show_texture", "use_custom_color", "warning_propagation"}

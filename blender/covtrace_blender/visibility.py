@@ -17,10 +17,10 @@ def hidden_from(rays):
 
 class Visibility:
     """Looks at the evaluated objects of a view layer, which a Clipping hides from the camera, and tells once for each kind what has no
-    counterpart. picture: one of shadow_catchers, or None."""
+    counterpart. picture: one of shadow_catchers, or None; is_scattered_through: whether something in the layer scatters light that passes it."""
 
-    def __init__(self, view_layer, clipping, picture=None):
-        self.view_layer, self._clipping, self._picture = view_layer, clipping, picture
+    def __init__(self, view_layer, clipping, picture=None, is_scattered_through=False):
+        self.view_layer, self._clipping, self._picture, self._is_scattered_through = view_layer, clipping, picture, is_scattered_through
         self._names = {}
 
     def hidden(self, instance):
@@ -70,12 +70,14 @@ class Visibility:
             self._note("lighting by more bounces than their own limit", obj)
         return True
 
-    @staticmethod
-    def _lamp_hidden(obj, hidden):
+    def _lamp_hidden(self, obj, hidden):
         """No ray finds a lamp without Multiple Importance, which files of before Blender 2.8 have off: it is not seen in mirrors and
-        through glass, and is sampled by all that is rough. Hidden from glossy rays it would have no highlights, so it stays in mirrors."""
-        is_found = getattr(getattr(obj.data, "cycles", None), "use_multiple_importance_sampling", True)
-        return hidden if is_found or not has_extent(obj.data) else hidden | {"camera", "transmission"}
+        through glass, and is sampled by all that is rough. What is hidden from a kind of rays gives no light to what scatters by them:
+        hidden from glossy ones it would have no highlights, so it stays in mirrors, and from transmission leaves before it would be
+        black, so it stays behind glass where there are such."""
+        if getattr(getattr(obj.data, "cycles", None), "use_multiple_importance_sampling", True) or not has_extent(obj.data):
+            return hidden
+        return hidden | ({"camera"} if self._is_scattered_through else {"camera", "transmission"})
 
     def _note_linking(self, obj):
         linking = getattr(obj, "light_linking", None)  # from Blender 4.0 on

@@ -4,7 +4,7 @@ import math
 import unittest.mock
 
 import bpy
-from addon_support import CyclesTest, mean
+from addon_support import CyclesTest, mean, render
 from covtrace_blender import world_baking
 
 class RayVisibilityTest(CyclesTest):
@@ -71,6 +71,21 @@ class RayVisibilityTest(CyclesTest):
         lamp.data.cycles.use_multiple_importance_sampling = False
         lamp.data.update_tag()
         self.assertLess(max(self.assert_parts_as_cycles(samples_of_cycles=1500)["Combined.R"]), seen / 4)
+
+    def test_lamps_that_no_ray_finds_shine_through_what_scatters(self):
+        """Leaves, and glass that is frosted, in Cycles as light is sampled for them."""
+        leaf = self.thing("plane", self.shader("BsdfTranslucent", "leaf"), (0, 0, 1), (1.4, 0, 0), size=6)
+        lamps = [self.lamp(kind, location=(0, 3, 3), **values) for kind, values in
+                 (("POINT", {"energy": 300, "shadow_soft_size": 0.3}), ("SUN", {"energy": 2, "angle": 0.3}))]
+        for lamp in lamps:
+            lamp.rotation_euler = (-1, 0, 0)
+            lamp.data.cycles.use_multiple_importance_sampling = False
+        self.camera.location, self.camera.rotation_euler = (0, -5, 1.8), (1.4, 0, 0)
+        self.assertGreater(mean(self.assert_parts_as_cycles())[0], 0.1)
+        leaf.data.materials[0] = self.shader("BsdfGlass", "frosted", Roughness=0.5)
+        for lamp in lamps:
+            lamp.data.update_tag()
+        self.assertGreater(mean(render("COVTRACE", 64))[0], 0.01)  # a sheet with a front alone differs from Cycles
 
     # -- objects
 
