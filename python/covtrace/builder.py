@@ -152,8 +152,11 @@ class SceneBuilder(Hinting):
         self._shutter = shutter
         size = resolution_of(resolution)
         try:
-            width, height = size
-        except (TypeError, ValueError):
+            size = tuple(size)
+            width, height = map(int, size)
+            if (width, height) != size:  # 1.5, or "640"
+                raise ValueError
+        except (TypeError, ValueError, OverflowError):
             refuse("resolution", resolution, "(width, height), or a text such as '640x360'")
         call = describe_call("camera", kind)
         self._camera = [(line, call) for line in [
@@ -161,7 +164,7 @@ class SceneBuilder(Hinting):
             f"Camera {_quoted(kind)} "
             + _parameters({"float shutteropen": shutter[0], "float shutterclose": shutter[1],
                            **parameters}),
-            f'Film "rgb" "integer xresolution" {int(width)} "integer yresolution" {int(height)}'
+            f'Film "rgb" "integer xresolution" {width} "integer yresolution" {height}'
             # The exposure is the shutter's length; the image should not depend on it.
             + ('' if shutter[1] == shutter[0]
                else f' "float iso" {100 / (shutter[1] - shutter[0])!r}'),

@@ -178,7 +178,7 @@ class Builder(unittest.TestCase):
         builder = covtrace.SceneBuilder()
         builder.camera(resolution="12x8")
         self.assertEqual(covtrace.Scene(builder).resolution, (12, 8))
-        for wrong in ("12", 12, (1, 2, 3)):
+        for wrong in ("12", 12, (1, 2, 3), (1.5, 2), ("12", "8"), (numpy.nan, 8), (numpy.inf, 8)):
             with self.subTest(wrong), self.assertRaisesRegex(covtrace.UsageError, r"resolution is .*; expected \(width, height\)"):
                 builder.camera(resolution=wrong)
 
