@@ -35,6 +35,13 @@
 
 namespace covtrace {
 
+/// Weights of four values one step apart, by Catmull-Rom, where `t` in [0, 1] lies between the
+/// second and the third.
+inline std::array<float, 4> catmull_rom_weights(float t) {
+    const float s = 1 - t, first = -0.5f * t * s * s, last = -0.5f * s * t * t;
+    return {first, s - 2 * first + last, t - 2 * last + first, last};
+}
+
 /// Tables of T, of the coat's own albedo and of R_int over roughness and angle, for one (eta,
 /// thickness).
 class CoatTable {
@@ -203,11 +210,7 @@ inline float CoatTable::lookup(const PerRow& values, float row) {
 inline CoatTable::Place::Place(float row, float cos_theta) {
     const float x = std::sqrt(clamp01(cos_theta)) * (kNodes - 1);
     node_ = std::min(static_cast<int>(x), kNodes - 2);
-    const float t = x - static_cast<float>(node_), s = 1 - t;
-    weights_[0] = -0.5f * t * s * s;
-    weights_[3] = -0.5f * s * t * t;
-    weights_[1] = s - 2 * weights_[0] + weights_[3];
-    weights_[2] = t - 2 * weights_[3] + weights_[0];
+    weights_ = catmull_rom_weights(x - static_cast<float>(node_));
     row_ = std::min(static_cast<int>(row), kRows - 2);
     of_next_row_ = row - static_cast<float>(row_);
 }

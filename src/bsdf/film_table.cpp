@@ -16,13 +16,6 @@ size_t index_of(bool inside, int row, int node) {
     return static_cast<size_t>((inside * CoatTable::kRows + row) * CoatTable::kNodes + node);
 }
 
-/// Weights of four values one step apart, by Catmull-Rom, where `t` in [0, 1] lies between the
-/// second and the third.
-std::array<float, 4> cubic_weights(float t) {
-    const float s = 1 - t, first = -0.5f * t * s * s, last = -0.5f * s * t * t;
-    return {first, s - 2 * first + last, t - 2 * last + first, last};
-}
-
 }  // namespace
 
 FilmKernel::FilmKernel(float eta) : eta_(eta), linear_(index_of(true, CoatTable::kRows, 0)) {
@@ -105,7 +98,7 @@ Rgb FilmTable::kept(bool inside, float row, float cos_theta, float thickness) co
     if (thickness < kThinnestFilm) return lerp(thickness / kThinnestFilm, of_slice(0), of_slice(1));
     const float x = std::min(thickness / step_, static_cast<float>(kSteps));
     const int i = std::min(static_cast<int>(x), kSteps - 1);
-    const std::array<float, 4> weights = cubic_weights(x - static_cast<float>(i));
+    const std::array<float, 4> weights = catmull_rom_weights(x - static_cast<float>(i));
     Rgb sum;
     for (int k = 0; k < 4; ++k)
         sum += weights[static_cast<size_t>(k)] * of_slice(1 + std::clamp(i - 1 + k, 0, kSteps));
