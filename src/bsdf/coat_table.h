@@ -32,15 +32,9 @@
 
 #include "bsdf/bsdf.h"
 #include "colour/reflectance_powers.h"
+#include "core/catmull_rom.h"
 
 namespace covtrace {
-
-/// Weights of four values one step apart, by Catmull-Rom, where `t` in [0, 1] lies between the
-/// second and the third.
-inline std::array<float, 4> catmull_rom_weights(float t) {
-    const float s = 1 - t, first = -0.5f * t * s * s, last = -0.5f * s * t * t;
-    return {first, s - 2 * first + last, t - 2 * last + first, last};
-}
 
 /// Tables of T, of the coat's own albedo and of R_int over roughness and angle, for one (eta,
 /// thickness).

@@ -1,6 +1,7 @@
 #include "bsdf/film_table.h"
 
 #include "bsdf/facet_quadrature.h"
+#include "core/catmull_rom.h"
 #include "core/memory_limit.h"
 
 namespace covtrace {

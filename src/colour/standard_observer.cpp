@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/catmull_rom.h"
+
 namespace covtrace {
 
 namespace {
@@ -41,13 +43,12 @@ constexpr Table kZ{0.00645, 0.01055, 0.02005, 0.03621, 0.06785, 0.1102,  0.2074,
                    0.0,     0.0,     0.0,     0.0,     0.0,     0.0,     0.0,     0.0,     0.0,
                    0.0,     0.0,     0.0,     0.0,     0.0,     0.0,     0.0,     0.0,     0.0};
 
-/// The curve through the table's values (Catmull and Rom), at x steps from the first.
+/// The curve through the table's values, at x steps from the first.
 double value(const Table& table, double x) {
     const size_t i = std::min(static_cast<size_t>(x), kCount - 2);
-    const double u = x - static_cast<double>(i);
-    const double a = table[i > 0 ? i - 1 : 0], b = table[i], c = table[i + 1],
-                 d = table[std::min(i + 2, kCount - 1)];
-    return b + u / 2 * (c - a + u * (2 * a - 5 * b + 4 * c - d + u * (3 * (b - c) + d - a)));
+    const std::array<double, 4> weights = catmull_rom_weights(x - static_cast<double>(i));
+    return weights[0] * table[i > 0 ? i - 1 : 0] + weights[1] * table[i] +
+           weights[2] * table[i + 1] + weights[3] * table[std::min(i + 2, kCount - 1)];
 }
 
 }  // namespace
