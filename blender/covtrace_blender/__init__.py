@@ -12,7 +12,7 @@ bl_info = {
 
 import bpy
 
-from . import engine, preview_session, settings
+from . import engine, preview_session, scene_files, settings
 
 CLASSES = (*settings.CLASSES, engine.CovtraceEngine)
 
@@ -21,10 +21,12 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     settings.register()
+    scene_files.register()
 
 
 def unregister():
     preview_session.stop_all()
+    scene_files.unregister()
     settings.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

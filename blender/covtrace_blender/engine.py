@@ -13,7 +13,7 @@ import traceback
 import bpy
 import numpy as np
 
-from . import export_scene, layers, settings, shadow_catchers, viewport
+from . import export_scene, layers, scene_files, settings, shadow_catchers, viewport
 from .warnings_together import together
 
 # Passes beside the image: (name as covtrace's Blender layer names have it, channels, their names, type).
@@ -85,7 +85,10 @@ class CovtraceEngine(bpy.types.RenderEngine):
         scene = depsgraph.scene
         try:
             with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
-                self._render(depsgraph, scene, folder)
+                if scene_files.is_wanted():
+                    self._write_files(depsgraph, folder)
+                else:
+                    self._render(depsgraph, scene, folder)
         except (RuntimeError, OSError) as problem:
             self._give_blank(depsgraph)
             self._fail(str(problem))
@@ -127,6 +130,11 @@ class CovtraceEngine(bpy.types.RenderEngine):
             sys.stdout.flush()
             sys.stderr.flush()
             os._exit(1)
+
+    def _write_files(self, depsgraph, folder):
+        for text in scene_files.write(self, depsgraph, folder, self._tell):
+            self.report({"WARNING"}, text)
+        self._give_blank(depsgraph)
 
     def _render(self, depsgraph, scene, folder):
         program = settings.find_program()
