@@ -176,8 +176,9 @@ class ShaderWriter(SocketReader):
         """A texture of heights in the scene's unit."""
         if node.inputs["Normal"].is_linked:
             self.warn(f"material '{self.name}': the Normal of '{node.name}' is not supported and left out")
-        scale = max(self._plain(node.inputs["Strength"]), 0) * self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1)
-        return self._displaced(node.inputs["Height"], scale)
+        found = self._displaced(node.inputs["Height"], self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1))
+        strength = max(self._plain(node.inputs["Strength"]), 0)
+        return [*found, f'"float bumpstrength" {strength:.9g}'] if found and strength != 1 else found
 
     def _displaced(self, heights, scale):
         """The texture of what a socket gives, `scale` times."""

@@ -102,6 +102,7 @@ MaterialId MaterialBuilder::build(Declared& d) {
                               maps.displacement,
                               maps.normal_map};
         m.maps_follow_uv = maps.follow_uv;
+        m.bump_strength = maps.bump_strength;
         m.sheen = layers.sheen;
         m.clearcoat = layers.clearcoat;
         d.id = static_cast<MaterialId>(context_.scene.materials.size());

@@ -329,6 +329,10 @@ NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& c
         context.scene.textures.push_back({{}, true, image, where});
     }
     maps.follow_uv = p.flag("mapsfollowuv", false);
+    maps.bump_strength = p.number("bumpstrength", 1);
+    if (!(maps.bump_strength >= 0))
+        throw Error(ErrorKind::scene, p.where("bumpstrength", entity.where),
+                    "a \"bumpstrength\" is below 0; expected 0 or more");
     return maps;
 }
 

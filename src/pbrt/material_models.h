@@ -16,7 +16,8 @@ decltype(MaterialDescription::value) material_model(Entity& entity, TextureBuild
 /// one isn't given.
 struct NormalMaps {
     TextureId displacement = -1, normal_map = -1;
-    bool follow_uv = false;  ///< a parameter of ours: "mapsfollowuv"
+    bool follow_uv = false;   ///< a parameter of ours: "mapsfollowuv"
+    float bump_strength = 1;  ///< a parameter of ours: "bumpstrength"
 };
 NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
 

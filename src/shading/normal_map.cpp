@@ -109,6 +109,11 @@ Frame NormalMap::frame_at(Vec2 shift) const {
         const float dv = (height(shift + Vec2{0, step_.y}) - here) / step_.y;
         tangent = dpdu_ + hit_.ns * du + dndu_ * here;
         normal = normalize(cross(tangent, dpdv_ + hit_.ns * dv + dndv_ * here));
+        const float s = material_.bump_strength;
+        if (s != 1) {
+            if (dot(normal, hit_.ns) < 0) normal = -normal;
+            normal = normalize(normal * s + hit_.ns * (1 - s));
+        }
     }
     if (!is_finite(normal) || normal == Vec3{}) normal = hit_.ns;
     if (dot(normal, hit_.ng) < 0) normal = -normal;

@@ -6,7 +6,8 @@
 ///   dp'/du = dp/du + (dd/du) n + d dn/du,   dp'/dv = dp/dv + (dd/dv) n + d dn/dv,
 ///
 /// whose cross product is the new normal; a normal map holds the new normal in the frame of n and
-/// dp/du. Tangents that a mesh has of its own stand for dp/du here. Derivatives of d are
+/// dp/du. A strength s other than 1 makes it normalize(s m + (1 - s) n) of the new normal m, as
+/// Cycles' node Bump does (svm/displace.h, svm_node_set_bump). Tangents that a mesh has of its own stand for dp/du here. Derivatives of d are
 /// differences over a fraction of a pixel. The surface itself stays.
 #pragma once
 

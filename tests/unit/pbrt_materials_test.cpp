@@ -182,7 +182,7 @@ TEST(SceneMaterials, BumpAndNormalMaps) {
     folder.write("n.png", "");
     const auto scene = read_pbrt(folder.write("scene.pbrt", R"(WorldBegin
 Texture "bumps" "float" "checkerboard"
-Material "diffuse" "texture displacement" "bumps"
+Material "diffuse" "texture displacement" "bumps" "float bumpstrength" 0.25
 Shape "sphere"
 Material "conductor" "string normalmap" "n.png" "bool mapsfollowuv" true
 Shape "sphere"
@@ -197,6 +197,8 @@ Shape "sphere"
         scene.textures.at(static_cast<size_t>(of(0).displacement)).value));
     EXPECT_EQ(of(0).normal_map, -1);
     EXPECT_FALSE(of(0).maps_follow_uv);
+    EXPECT_EQ(of(0).bump_strength, 0.25f);
+    EXPECT_EQ(of(1).bump_strength, 1);
     EXPECT_TRUE(of(1).maps_follow_uv);
     EXPECT_EQ(constant_as<ImageTexture>(scene, of(1).normal_map).encoding,
               ImageTexture::Encoding::linear);

@@ -69,6 +69,27 @@ TEST(NormalMap, BumpIsTheNormalOfTheDisplacedSurface) {
     expect_near(frame.x, normalize(Vec3{1, 0, du}), 2e-3f);
 }
 
+TEST(NormalMap, StrengthMixesTheBumpedNormalWithTheSurfacesOwn) {
+    const TemporaryImage image(saddle(), 2, 2);
+    constexpr float kScale = 30, u = 0.6f, v = 0.4f;  // steep: nearly along the surface
+    const float du = kScale * 2 * (2 * v - 0.5f), dv = kScale * 2 * (2 * u - 0.5f);
+    const Vec3 bumped = normalize(Vec3{-du, -dv, 1});
+    Mapped m(image, true, kScale, {u, v, 0});
+    for (const float strength : {0.0f, 0.2f, 1.5f}) {
+        m.material.bump_strength = strength;
+        Vec3 expected = normalize(bumped * strength + Vec3{0, 0, 1} * (1 - strength));
+        if (expected.z < 0) expected = -expected;
+        expect_near(m.map().frame().z, expected, 2e-3f);
+    }
+    // The surface is turned over: heights rise on its other side.
+    ShapeDescription reversed = mesh_of(unit_square());
+    reversed.reverse_orientation = true;
+    Mapped r(image, true, kScale, {u, v, 0}, reversed);
+    r.material.bump_strength = 0.2f;
+    expect_near(r.map().frame().z,
+                normalize(normalize(Vec3{-du, -dv, -1}) * 0.2f + Vec3{0, 0, -0.8f}), 2e-3f);
+}
+
 TEST(NormalMap, BumpAddsItsSecondDerivativesToTheCurvature) {
     const TemporaryImage image(saddle(), 2, 2);
     constexpr float kScale = 1e-3f;
