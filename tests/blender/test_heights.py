@@ -25,6 +25,22 @@ class HeightsTest(NodeTilesTest):
         self.assert_nodes({"bump": build(1.0, 0.08), "inverted": build(1.0, 0.06, True), "half": build(0.5, 0.12)},
                           most_of_structure=0.6)
 
+    def test_strength_bounds_how_far_heights_turn_normals(self):
+        """Heights so steep that their normals lie nearly along the surface: a Strength mixes these with its own."""
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        bpy.ops.object.light_add(type="SUN", rotation=(0, 0.5, 0))
+        bpy.context.object.data.energy = 3
+
+        def waves(strength):
+            def show(tree):
+                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 3.1})
+                height = tree.node("Math", {"operation": "SINE"}, {0: turned})
+                bump = tree.node("Bump", {}, {"Strength": strength, "Distance": 20.0, "Height": height})
+                tree.link(bump, 0, tree.shader.inputs["Normal"])
+            return show
+
+        self.assert_nodes({"weak": waves(0.2), "half": waves(0.4)}, most_of_structure=0.3)
+
     def test_displacement_turns_normals(self):
         """By the object's scale, where the node's space is that of the object."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
