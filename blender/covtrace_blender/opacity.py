@@ -77,6 +77,9 @@ class OpacityReader(ShaderWriter):
 
     def _share_of_opaque(self, node, share, first, second):
         """The share of the second part of a Mix in what stops light. share: that in all; first, second: both opacities."""
+        for clear, whole in ((first, 1.0), (second, 0.0)):
+            if not clear.image and clear.constant == 0:
+                return Value(whole)
         if not first.image and not second.image:
             if first.constant == second.constant or not share.image and share.constant in (0, 1):
                 return share
@@ -86,9 +89,12 @@ class OpacityReader(ShaderWriter):
         return self._baked_share(node, "share of opaque", lambda nodes: self._opaque_share_at(nodes, node), share)
 
     def _opaque_share_at(self, nodes, node):
-        """The same at the places of an Evaluator."""
+        """The same at the places of an Evaluator; where nothing is opaque that at which it ends, so that texels which are partly clear
+        do not mix in a part that is seen nowhere."""
         share, first, second = self._mixed_at(nodes, node)
-        return share * second / np.maximum(first * (1 - share) + second * share, np.float32(1e-6))
+        total = first * (1 - share) + second * share
+        limit = np.where(first + second > 0, second / np.maximum(first + second, np.float32(1e-6)), share)
+        return np.where(total > 1e-6, share * second / np.maximum(total, np.float32(1e-6)), limit)
 
     def _baked_share(self, node, how, get, otherwise):
         """Value of what a function of an Evaluator gives of a shader's node; `otherwise` where nodes cannot be evaluated, which is told."""

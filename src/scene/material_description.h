@@ -183,7 +183,7 @@ struct MaterialDescription {
     /// is mirrored, and on meshes with normals heights are taken for those of a v that stands left
     /// of u and is as long, as in pbrt.
     bool maps_follow_uv = false;
-    /// Of the normal that heights give, in a sum with the unturned one, which has the rest; >= 0.
+    /// Share of the normal that heights give, in a sum with the unturned one's rest; >= 0.
     float bump_strength = 1;
     /// Angle from x = dp/du to the axis that u_roughness lies along, radians, towards a map's y.
     float tangent_rotation = 0;

@@ -15,6 +15,13 @@ class Tree:
         self.shader = self.tree.nodes.new("ShaderNodeBsdfDiffuse")
         self.link(self.shader, "BSDF", self.tree.nodes["Material Output"].inputs["Surface"])
 
+    @classmethod
+    def of(cls, material):
+        """That of a material which has nodes of its own."""
+        found = cls.__new__(cls)
+        found.material, found.tree = material, material.node_tree
+        return found
+
     def link(self, node, output, socket):
         self.tree.links.new(node.outputs[output], socket)
 

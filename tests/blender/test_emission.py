@@ -2,6 +2,7 @@
 
 import bpy
 from addon_support import BlenderTest, material, mean, render
+from node_trees import Tree
 
 
 class EmissionTest(BlenderTest):
@@ -63,6 +64,46 @@ class EmissionTest(BlenderTest):
                 self.export()
                 self.assertEqual(self.warnings, [])
             bpy.data.objects.remove(plane)
+
+    def test_masks_finer_than_texels_keep_their_light(self):
+        """The light of what a mask shows on something clear: texels of the light and of the mask are means each."""
+        for parts in ((("clear",), ("light", 2.0)), (("light", 2.0), ("clear",)), (("clear",), ("mix", 0.4, ("light", 2.0), ("matt",)))):
+            m = self.material_of(("mix", 0.5, *parts))
+            tree = Tree.of(m)
+            slanted = tree.node("Math", {"operation": "MULTIPLY_ADD"}, {0: tree.number(), 1: 700.0, 2: tree.number(1)})
+            fraction = tree.node("Math", {"operation": "FRACT"}, {0: slanted})
+            mask = tree.node("Math", {"operation": "LESS_THAN"}, {0: fraction, 1: 0.3})
+            m.node_tree.links.new(mask.outputs[0], self.top_of(m).inputs[0])
+            # A colour that varies makes an image of the light, too.
+            light = next(node for node in m.node_tree.nodes if node.type == "EMISSION")
+            m.node_tree.links.new(tree.colours().outputs[0], light.inputs["Color"])
+            plane = self.plane(m)
+            with self.subTest(parts=parts):
+                self.assert_as_cycles(0.02)
+            bpy.data.objects.remove(plane)
+
+    def test_colours_and_numbers_shine_where_shaders_are_asked_for(self):
+        m = self.material_of(("mix", 0.3, ("matt",), ("matt",)))
+        tree, mix = Tree.of(m), self.top_of(m)
+        m.node_tree.links.new(tree.colours().outputs[0], mix.inputs[2])
+        number = tree.node("Math", {"operation": "ADD"}, {0: tree.number(), 1: 0.5})
+        plane = self.plane(m)
+        for node, end in ((None, mix), (number, mix.inputs[1]), (tree.colours(), self.output_of(m)), (number, self.output_of(m))):
+            if node:
+                m.node_tree.links.new(node.outputs[0], end)
+            with self.subTest(node=node and node.type, end=end.name):
+                self.assert_as_cycles(0.02)
+                self.export()
+                self.assertEqual(self.warnings, [])
+        bpy.data.objects.remove(plane)
+
+    @staticmethod
+    def output_of(m):
+        return m.node_tree.nodes["Material Output"].inputs["Surface"]
+
+    def top_of(self, m):
+        """The shader's node that a material is."""
+        return self.output_of(m).links[0].from_node
 
     def test_light_that_is_not_weakened_is_told(self):
         mask = self.image("mask", (0.2, 0.9, 0.4, 0.7))

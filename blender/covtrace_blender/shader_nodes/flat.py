@@ -89,6 +89,35 @@ class Conversion:
         self.name, self.path = socket.name, (*socket.node.path, "", socket.identifier)
 
 
+class Shining:
+    """The Emission that a colour or a number is where it reaches a FlatSocket of shaders, as in Cycles."""
+
+    type, name, mute = "EMISSION", "Emission", False
+
+    def __init__(self, socket, link):
+        self.id_data, self.path = socket.id_data, (*socket.node.path, "", socket.identifier)
+        self.outputs = [ShiningSocket(self, "Emission", "SHADER", None)]
+        self.inputs = _ByName(ShiningSocket(self, "Color", "RGBA", (0.0, 0.0, 0.0, 1.0), link), ShiningSocket(self, "Strength", "VALUE", 1.0))
+
+
+class ShiningSocket:
+    """A socket of Shining, as a FlatSocket is one."""
+
+    def __init__(self, node, name, kind, default_value, link=None):
+        self.node, self.name, self.identifier, self.type, self.default_value = node, name, name, kind, default_value
+        self.id_data, self.links, self.is_linked = node.id_data, [link] if link else [], link is not None
+
+
+class _ByName(dict):
+    """Sockets by their names, which are gone through in a row."""
+
+    def __init__(self, *sockets):
+        super().__init__((socket.name, socket) for socket in sockets)
+
+    def __iter__(self):
+        return iter(self.values())
+
+
 class FlatSocket:
     """A socket of a FlatNode. As an input it is linked where a node's output reaches it, through groups or not; else its
     default_value is what reaches it: that of the group's socket, where one feeds it."""
@@ -110,6 +139,9 @@ class FlatSocket:
     @property
     def links(self):
         found, _ = self._source()
+        if found and self._socket.type == "SHADER" and found.from_socket.type != "SHADER":
+            shining = Shining(self, found)
+            return [_Link(shining, shining.outputs[0])]
         return [found] if found else []
 
     @property
