@@ -108,8 +108,7 @@ class Baker:
 
         rows, columns = (axis.ravel() for axis in np.mgrid[:height, :width])
         values = mean_at(columns, rows, [(0, 0)]).reshape(height, width, channels)
-        rows, columns = np.nonzero(edges.edges(values))
-        values[rows, columns] = mean_at(columns, rows, edges.places(len(rows), width * height))
+        edges.add_means(values, lambda rows, columns, places: mean_at(columns, rows, places))
         return values
 
 

@@ -40,11 +40,11 @@ def bake_body(get, body, pixels_of, ray, owner):
         by_parts(work, len(chosen))
         return found
 
-    values = mean_at(np.arange(count), [(0.0, 0.0)])
+    image = scattered(body.atlas, mean_at(np.arange(count), [(0.0, 0.0)]))
     chart = scattered(body.atlas, body.atlas.chart[texels.triangle, None] + 1)[..., 0]
-    crossed = np.flatnonzero(edges.edges(scattered(body.atlas, values), chart)[texels.rows, texels.columns])
-    values[crossed] = mean_at(crossed, edges.places(len(crossed), count))
-    return Baked(image=body_image(body.atlas, values), layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds, is_mean=any(means))
+    number = scattered(body.atlas, np.arange(count)[:, None])[..., 0]
+    edges.add_means(image, lambda rows, columns, places: mean_at(number[rows, columns], places), chart, chart > 0)
+    return Baked(image=body_image(body.atlas, image[texels.rows, texels.columns]), layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds, is_mean=any(means))
 
 
 def scattered(atlas, values):

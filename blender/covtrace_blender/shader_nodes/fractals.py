@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .noise import signed_noise
+from .noise import LEAST_SHARE, signed_noise
 
 
 class Octaves:
@@ -16,15 +16,26 @@ class Octaves:
         self._count = np.asarray(count, np.float32)
 
     def __iter__(self):
+        return self._first(self._whole())
+
+    def _whole(self):
+        return int(np.ceil(self._count.max()))
+
+    def that_count(self):
+        """Those of a sum, without the last ones that change less than LEAST_SHARE together."""
+        strengths = [float(np.max(self._fall)) ** octave for octave in range(self._whole())]
+        return self._first(next((k for k in range(len(strengths)) if sum(strengths[k:]) < LEAST_SHARE), len(strengths)))
+
+    def _first(self, number):
         frequency = strength = np.float32(1)
-        for octave in range(int(np.ceil(self._count.max()))):
+        for octave in range(number):
             noise = signed_noise(self._p * np.asarray(frequency)[..., None])
             yield noise, strength, np.clip(self._count - octave, 0, 1)
             frequency, strength = frequency * self._lacunarity, strength * self._fall
 
 
 def _fbm(octaves, offset, gain):
-    return sum((share * strength * noise for noise, strength, share in octaves), np.float32(0))
+    return sum((share * strength * noise for noise, strength, share in octaves.that_count()), np.float32(0))
 
 
 def _multifractal(octaves, offset, gain):

@@ -66,7 +66,7 @@ def signed_noise(p):
 
 
 # Share of the whole that the last octaves may have together and be left out: half a step of 8 bits.
-_LEAST_SHARE = 1 / 512
+LEAST_SHARE = 1 / 512
 
 
 def fractal(p, detail, roughness, lacunarity=2.0):
@@ -85,7 +85,7 @@ def fractal(p, detail, roughness, lacunarity=2.0):
                  for octave, strength in enumerate(strengths)]
     total, frequency = np.float32(0), np.float32(1)
     for octave, weight in enumerate(of_octave):
-        if sum(np.max(rest) for rest in of_octave[octave:]) < _LEAST_SHARE:
+        if sum(np.max(rest) for rest in of_octave[octave:]) < LEAST_SHARE:
             break
         total = total + weight.astype(np.float32) * signed_noise(p * np.asarray(frequency)[..., None])
         frequency = frequency * lacunarity
