@@ -134,7 +134,7 @@ class ShaderWriter(SocketReader):
     def _normal_map(self, node):
         """Parameters of the map that turns the normal; maps lie as the texture coordinates do, as in Cycles."""
         source, _ = self._linked(node.inputs["Normal"])
-        found = self._map_of(source) if source else self._displaced(*self.heights) if self.heights else []
+        found = self._map_of(source) if source else self._displaced([self.heights]) if self.heights else []
         return [*found, '"bool mapsfollowuv" true'] if found else []
 
     def _map_of(self, source):
@@ -173,17 +173,30 @@ class ShaderWriter(SocketReader):
         return [f'"string normalmap" "{self.files.write(found, "normals", lambda pixels: pixels[..., :3])}"']
 
     def _bump(self, node):
-        """A texture of heights in the scene's unit."""
-        if node.inputs["Normal"].is_linked:
-            self.warn(f"material '{self.name}': the Normal of '{node.name}' is not supported and left out")
-        found = self._displaced(node.inputs["Height"], self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1))
-        strength = max(self._plain(node.inputs["Strength"]), 0)
+        """A texture of heights in the scene's unit; those of Bumps that give each other their normals are added up, as their slopes nearly are
+        in Cycles."""
+        parts, strengths, base = [], [], node
+        while base is not None and base.type == "BUMP":
+            parts.append((base.inputs["Height"], self._plain(base.inputs["Distance"]) * (-1 if base.invert else 1)))
+            strengths.append(max(self._plain(base.inputs["Strength"]), 0))
+            last, (base, _) = base, self._linked(base.inputs["Normal"])
+        if base is not None:
+            self.warn(f"material '{self.name}': the Normal of '{last.name}' is not supported and left out")
+        strength = max(strengths)
+        if strength == 0:
+            return []
+        found = self._displaced([(height, scale * own / strength) for (height, scale), own in zip(parts, strengths)], node.outputs[0])
         return [*found, f'"float bumpstrength" {strength:.9g}'] if found and strength != 1 else found
 
-    def _displaced(self, heights, scale):
-        """The texture of what a socket gives, `scale` times."""
+    def _displaced(self, parts, output=None):
+        """The texture of the sum of [(socket of heights, factor)]; output: of the node that adds several."""
+        scale = parts[0][1] if len(parts) == 1 else 1.0
         try:
-            height = self._baked_value(heights, is_number=True)
+            if len(parts) == 1:
+                height = self._baked_value(parts[0][0], is_number=True)
+            else:
+                height = self._baked_function(lambda nodes: sum(factor * nodes.number(socket) for socket, factor in parts), output,
+                                              ("heights", *(factor for _, factor in parts)))
         except Unsupported as problem:
             self._ask_for_body(problem)
             self.warn(f"material '{self.name}': node '{problem.node.name}' at 'Height' is not supported ({problem.reason}); "

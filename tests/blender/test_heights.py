@@ -41,6 +41,25 @@ class HeightsTest(NodeTilesTest):
 
         self.assert_nodes({"weak": waves(0.2), "half": waves(0.4)}, most_of_structure=0.3)
 
+    def test_bumps_turn_the_normals_of_others(self):
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.6, 0))
+        bpy.context.object.data.energy = 2
+
+        def both(strengths):
+            def show(tree):
+                last = None
+                for axis, strength in enumerate(strengths):
+                    turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(axis), 1: 4.7})
+                    height = tree.node("Math", {"operation": "SINE"}, {0: turned})
+                    last = tree.node("Bump", {"invert": axis == 1}, {"Strength": strength, "Distance": 0.08, "Height": height,
+                                                                     **({"Normal": last} if last else {})})
+                tree.link(last, 0, tree.shader.inputs["Normal"])
+            return show
+
+        self.assert_nodes({"whole": both((1.0, 1.0)), "parts": both((0.5, 1.0)), "weak": both((0.4, 0.4)), "second": both((0.0, 1.0))},
+                          most_of_structure=0.6)
+
     def test_displacement_turns_normals(self):
         """By the object's scale, where the node's space is that of the object."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
