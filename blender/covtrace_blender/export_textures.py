@@ -8,7 +8,7 @@ import numpy as np
 
 from . import tiled_images
 from .baked import BakedImage
-from .node_images import NodeImage, with_other_opacity
+from .node_images import MISSING, NodeImage, with_other_opacity
 from .working_space import from_rec709
 
 
@@ -25,8 +25,6 @@ def to_srgb(values):
 
 
 LINEAR = ("Linear", "Linear Rec.709")  # linear Rec.709 before Blender 4.0, and since
-
-MISSING = (1, 0, 1, 1)  # linear; the magenta by which Blender shows images whose files are missing
 
 
 def pixels(image, warn):

@@ -2,6 +2,7 @@
 
 import bpy
 
+MISSING = (1, 0, 1, 1)  # linear; the magenta by which Blender shows images whose files are missing
 HAVE_OPACITY = ("STRAIGHT", "PREMUL")  # ways of images in which alpha is opacity, and no further channel
 
 

@@ -333,7 +333,7 @@ class MaterialsTest(BlenderTest):
         tree.links.new(mirrored.outputs["Fac"], principled.inputs["Roughness"])
         tree.links.new(image.outputs["Color"], socket(principled, "Specular"))
         tree.links.new(noise.outputs["Color"], output.inputs["Displacement"])
-        tree.links.new(noise.outputs["Fac"], output.inputs["Volume"])
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], output.inputs["Volume"])
         self.plane(m)
         lamp = self.lamp("SPOT", energy=10)
         lamp.data.use_nodes = True

@@ -46,6 +46,20 @@ class TexturesTest(BlenderTest):
                 for a, b in zip(mean(ours, x0, y0, x1, y1), mean(theirs, x0, y0, x1, y1)):
                     self.assertAlmostEqual(a, b, delta=delta)
 
+    def test_nodes_without_an_image_are_as_in_cycles(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        for output in ("Color", "Alpha"):
+            tree = Tree(output)
+            # Half of it: the light of magenta alone would have no green, of which no share could be off.
+            half = tree.node("Mix", {"data_type": "RGBA"}, {0: 0.5, 6: (tree.node("TexImage"), output), 7: (0.2, 0.4, 0.6, 1)})
+            tree.show(half, 2)
+            plane = self.plane(tree.material, size=3)
+            with self.subTest(output):
+                self.assert_quarters_as_cycles()
+                self.export()
+                self.assertEqual(self.warnings, [])
+            bpy.data.objects.remove(plane)
+
     def test_uv_maps_are_those_of_the_render(self):
         # The UV maps selected in the editor, active for the render, and named by a node all differ.
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)

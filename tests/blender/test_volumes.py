@@ -179,6 +179,18 @@ class VolumesTest(BlenderTest):
         self.export()
         self.assertEqual(self.warnings, [])
 
+    def test_colours_and_numbers_shine_in_volumes(self):
+        m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
+        tree = m.node_tree
+        for kind, value in (("ShaderNodeRGB", (0.1, 0.2, 0.3, 1)), ("ShaderNodeValue", 0.2)):
+            node = tree.nodes.new(kind)
+            node.outputs[0].default_value = value
+            tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
+            with self.subTest(kind):
+                self.assert_as_cycles(0.02)
+                self.export()
+                self.assertEqual(self.warnings, [])
+
     def test_volumes_that_are_none_are_told_and_hide_nothing(self):
         m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
         tree = m.node_tree

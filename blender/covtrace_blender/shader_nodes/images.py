@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .. import tiled_images
-from ..node_images import image_of
+from ..node_images import MISSING, image_of
 from .unsupported import Unsupported
 
 WRAPS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
@@ -87,8 +87,8 @@ def _around(p, is_sphere):
 
 
 def _image(node, output, inputs):
-    if not node.image:
-        raise Unsupported(node, "it has no image")
+    if not node.image:  # as in Cycles, like an image whose file is missing
+        return np.float32(MISSING[3]) if output.identifier == "Alpha" else np.array(MISSING[:3], np.float32)
     if node.extension not in WRAPS:
         raise Unsupported(node, f"its extension {node.extension.lower()} has no counterpart")
 
