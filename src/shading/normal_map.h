@@ -7,8 +7,9 @@
 ///
 /// whose cross product is the new normal; a normal map holds the new normal in the frame of n and
 /// dp/du. A strength s other than 1 makes it normalize(s m + (1 - s) n) of the new normal m, as
-/// Cycles' node Bump does (svm/displace.h, svm_node_set_bump). Tangents that a mesh has of its own stand for dp/du here. Derivatives of d are
-/// differences over a fraction of a pixel. The surface itself stays.
+/// Cycles' node Bump does (svm/displace.h, svm_node_set_bump). Tangents that a mesh has of its own
+/// stand for dp/du here. Derivatives of d are differences over a fraction of a pixel. The surface
+/// itself stays.
 #pragma once
 
 #include "core/frame.h"
