@@ -30,7 +30,12 @@ MOST_SECONDS = 60  # of each picture
 TOLERANCE = 0.05
 
 
-def prepare(width):
+def open_file(file, width):
+    """The scene of a file, its frame's longer side of so many pixels."""
+    if "cycles" not in bpy.context.preferences.addons:
+        bpy.ops.preferences.addon_enable(module="cycles")
+    covtrace_blender.register()
+    bpy.ops.wm.open_mainfile(filepath=file, load_ui=False, use_scripts=False)
     scene = bpy.context.scene
     render = scene.render
     share = min(1.0, width / max(render.resolution_x, render.resolution_y))
@@ -123,11 +128,7 @@ def side_by_side(path, left, right):
 
 
 def main(file, stem, width, samples, cycles_samples):
-    if "cycles" not in bpy.context.preferences.addons:
-        bpy.ops.preferences.addon_enable(module="cycles")
-    covtrace_blender.register()
-    bpy.ops.wm.open_mainfile(filepath=file, load_ui=False, use_scripts=False)
-    scene = prepare(int(width))
+    scene = open_file(file, int(width))
     found = {"version": list(bpy.data.version), "engine": scene.render.engine}
     recorded(found)
     try:
@@ -150,6 +151,7 @@ def main(file, stem, width, samples, cycles_samples):
     pathlib.Path(stem + ".json").write_text(json.dumps(found))
 
 
-main(*sys.argv[1:])
-sys.stdout.flush()
-os._exit(0)  # the module's own end may take minutes
+if __name__ == "__main__":
+    main(*sys.argv[1:])
+    sys.stdout.flush()
+    os._exit(0)  # the module's own end may take minutes

@@ -330,9 +330,9 @@ NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& c
     }
     maps.follow_uv = p.flag("mapsfollowuv", false);
     maps.bump_strength = p.number("bumpstrength", 1);
-    if (!(maps.bump_strength >= 0))
+    if (!(maps.bump_strength >= 0 && maps.bump_strength <= 1000))
         throw Error(ErrorKind::scene, p.where("bumpstrength", entity.where),
-                    "a \"bumpstrength\" is below 0; expected 0 or more");
+                    "a \"bumpstrength\" is out of range; expected a number from 0 to 1000");
     return maps;
 }
 

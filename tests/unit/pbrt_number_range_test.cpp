@@ -92,5 +92,12 @@ TEST(SceneNumberRange, IndicesOfRefraction) {
     }
 }
 
+TEST(SceneNumberRange, StrengthsOfBumps) {
+    for (const char* strength : {"-1", "1e30"})
+        EXPECT_TRUE(contains(
+            world_error(std::string("Material \"diffuse\" \"float bumpstrength\" ") + strength),
+            "a \"bumpstrength\" is out of range; expected a number from 0 to 1000"));
+}
+
 }  // namespace
 }  // namespace covtrace::test
