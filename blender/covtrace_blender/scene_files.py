@@ -53,7 +53,7 @@ class ExportScene(bpy.types.Operator, ExportHelper):
         _wanted = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.filename_ext)
         scene.render.engine = ENGINE
         try:
-            # What is rendered differs from what viewports show: subdivision, visibility, instances.
+            # A render has other subdivision, visibility and instances than viewports show.
             bpy.ops.render.render(scene=scene.name, layer=context.view_layer.name)
         except RuntimeError as problem:
             self.report({"ERROR"}, str(problem).strip())

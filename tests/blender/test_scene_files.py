@@ -17,7 +17,7 @@ class SceneFilesTest(BlenderTest):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def picture(self, file):
-        """What the program makes of a scene file, in a folder of its own."""
+        """The channels that the program renders of a scene file."""
         image = file.with_suffix(".exr")
         subprocess.run([os.environ["COVTRACE"], "render", file, "-o", image, "--spp", "16", "--quiet", "--layer-names", "blender"],
                        check=True, cwd=self.folder.parent)
