@@ -31,7 +31,8 @@ def _aperture(dof):
     is_polygon = dof.aperture_blades >= 3  # Cycles has no fewer blades
     blades = f' "integer apertureblades" {dof.aperture_blades} "float aperturerotation" {math.degrees(dof.aperture_rotation):.9g}' \
         if is_polygon else ""
-    return blades + (f' "float apertureratio" {dof.aperture_ratio:.9g}' if abs(dof.aperture_ratio - 1) > 1e-6 else "")
+    ratio = min(max(dof.aperture_ratio, 1e-3), 1e3)
+    return blades + (f' "float apertureratio" {ratio:.9g}' if abs(ratio - 1) > 1e-6 else "")
 
 
 KINDS = {"PERSP": "perspective", "ORTHO": "orthographic", "PANO": "spherical"}

@@ -27,14 +27,15 @@ def panorama_text(data, size):
                f'"float latitude" [{max(south, -90):.7g} {min(north, 90):.7g}]'
     if kind not in FISHEYES:
         raise RuntimeError(f"covtrace: panoramas of the type {kind} are not supported; expected equirectangular ones or fisheyes")
-    x, y = _half_frame(data, of, size) if kind == "FISHEYE_EQUISOLID" else (1, 1)
-    return f'"string mapping" "{FISHEYES[kind]}" "float fov" {math.degrees(of.fisheye_fov):.9g} ' \
+    fov = min(of.fisheye_fov, 2 * math.pi)  # Cycles goes around more than once
+    x, y = _half_frame(data, of.fisheye_lens, fov, size) if kind == "FISHEYE_EQUISOLID" else 2 * (of.fisheye_fov / fov,)
+    return f'"string mapping" "{FISHEYES[kind]}" "float fov" {math.degrees(fov):.9g} ' \
            f'"float screenwindow" [{-x:.9g} {x:.9g} {-y:.9g} {y:.9g}]'
 
 
-def _half_frame(data, of, size):
+def _half_frame(data, lens, fov, size):
     """Half the frame's sides over the radius of its circle, from the lens and the sensor, both in mm."""
-    radius = 2 * of.fisheye_lens * math.sin(of.fisheye_fov / 4)
+    radius = 2 * lens * math.sin(fov / 4)
     width, height = size
     is_width = data.sensor_fit == "HORIZONTAL" or data.sensor_fit == "AUTO" and width >= height
     of_sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width

@@ -5,7 +5,6 @@ import re
 import shutil
 
 import bpy
-from bpy_extras.io_utils import ExportHelper
 
 from .export_scene import SceneExporter
 from .settings import ENGINE
@@ -40,18 +39,28 @@ def write(engine, depsgraph, folder, tell):
     return together(exporter.warnings)
 
 
-class ExportScene(bpy.types.Operator, ExportHelper):
+class ExportScene(bpy.types.Operator):
     """Write the current frame as a scene file, with its meshes and images beside it"""
     bl_idname = "export_scene.covtrace"
     bl_label = "Export covtrace"
-    filename_ext = ".pbrt"
+
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", description="The scene file")
     filter_glob: bpy.props.StringProperty(default="*.pbrt", options={"HIDDEN"})
+
+    def invoke(self, context, event):
+        self.filepath = os.path.splitext(bpy.data.filepath or "scene")[0] + ".pbrt"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
 
     def execute(self, context):
         global _wanted
-        scene, before = context.scene, context.scene.render.engine
-        _wanted = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.filename_ext)
-        scene.render.engine = ENGINE
+        scene, render = context.scene, context.scene.render
+        # A compositor could write the blank picture over others.
+        settings = {"engine": ENGINE, "use_compositing": False, "use_sequencer": False}
+        before = {name: getattr(render, name) for name in settings}
+        _wanted = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".pbrt")
+        for name, value in settings.items():
+            setattr(render, name, value)
         try:
             # A render has other subdivision, visibility and instances than viewports show.
             bpy.ops.render.render(scene=scene.name, layer=context.view_layer.name)
@@ -59,7 +68,9 @@ class ExportScene(bpy.types.Operator, ExportHelper):
             self.report({"ERROR"}, str(problem).strip())
             return {"CANCELLED"}
         finally:
-            _wanted, scene.render.engine = None, before
+            _wanted = None
+            for name, value in before.items():
+                setattr(render, name, value)
         return {"FINISHED"}
 
 

@@ -40,7 +40,7 @@ class SceneFilesTest(BlenderTest):
         bpy.context.object.hide_viewport = True
         self.scene.render.engine = "CYCLES"
         self.assertEqual(bpy.ops.export_scene.covtrace(filepath=str(self.folder / "room")), {"FINISHED"})
-        self.assertEqual(self.scene.render.engine, "CYCLES")
+        self.assertEqual((self.scene.render.engine, self.scene.render.use_compositing), ("CYCLES", True))
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["room-files", "room.pbrt"])
         self.assertNotIn(str(self.folder), (self.folder / "room.pbrt").read_text())
         elsewhere = self.folder / "elsewhere"
