@@ -75,8 +75,7 @@ Vec2 Panorama::film(Vec3 w) const {
         const auto& [left, right, top, bottom] = sphere_part_;
         const float turn = std::atan2(w.z, w.x) / (2 * kPi);
         // Several turns mean this direction; the film shows one
-        const float first = std::min(left, right);
-        const float shown = turn + std::ceil(first - turn);
+        const float shown = turn + std::ceil(left - turn);
         const float polar = std::acos(std::clamp(w.y, -1.0f, 1.0f)) / kPi;
         uv = {(shown - left) / (right - left), (polar - top) / (bottom - top)};
     }
@@ -90,7 +89,7 @@ bool Panorama::sees(Vec2 film) const {
 
 float Panorama::pixel_angle() const {
     if (is_fisheye()) return half_fov_ * per_pixel_.x;
-    return kPi * std::abs(sphere_part_[3] - sphere_part_[2]) / size_.y;
+    return kPi * (sphere_part_[3] - sphere_part_[2]) / size_.y;
 }
 
 }  // namespace covtrace

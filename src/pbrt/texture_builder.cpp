@@ -112,9 +112,8 @@ TextureId TextureBuilder::spectrum_or_none(ParameterList& list, std::string_view
     if (p->type == ParameterType::texture) return named(*p, true);
     Rgb c = factor_colour(*p, context_);
     if (is_reflectance && max_component(c) > 1) {
-        // A warning is due to given numbers alone: the fit of the colour matching functions lets
-        // saturated spectra stray by a few thousandths, and other colour spaces hold colours, and
-        // white but for rounding, beyond Rec.709.
+        // A warning is due to given numbers alone: saturated spectra, and colours of other spaces,
+        // among them white by rounding, lie beyond Rec.709 without anybody's fault.
         if (p->type == ParameterType::rgb &&
             std::ranges::any_of(p->numbers, [](float v) { return v > 1; }))
             context_.log.add(p->where, "parameter " + in_quotes(p->name) + " is above 1; cut to 1");

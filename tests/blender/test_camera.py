@@ -109,6 +109,9 @@ class CameraTest(BlenderTest):
                 part = (x0, y0, x0 + 8, y0 + 8)
                 for a, b in zip(mean(ours, *part), mean(theirs, *part)):
                     self.assertAlmostEqual(a, b, delta=0.03, msg=f"{kind} {part}")
+        data.dof.use_dof = True
+        self.export()
+        self.assertEqual(self.warnings, ["the camera's depth of field is left out, as it is a panorama"])
         of.panorama_type = "MIRRORBALL"
         data.update_tag()
         with self.assertRaisesRegex(RuntimeError, "MIRRORBALL are not supported"):
