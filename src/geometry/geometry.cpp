@@ -53,11 +53,12 @@ void place(SurfacePoint& point, const Affine& world_from_local, const Affine& lo
     point.tangent = map.vector(point.tangent);
 }
 
-/// Writes `point`, which is in the world, into a hit.
-void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
+/// Writes `point`, which is in the world, into a hit of a ray with this direction.
+void fill_hit(const SurfacePoint& point, Vec3 direction, SurfaceHit& hit) {
     hit.position = point.position.to_float();
     hit.ng = point.ng.to_float();
     hit.ns = point.ns.to_float();
+    hit.facing = std::min(1.0f, std::abs(dot(hit.ns, direction)));
     hit.dpdu = point.dpdu.to_float();
     hit.dpdv = point.dpdv.to_float();
     hit.tangent = point.tangent.to_float();
@@ -122,8 +123,9 @@ bool Geometry::Impl::nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& h
         const Vec3 outward = shape.description.reverse_orientation ? -h.ng : h.ng;
         if (shape.is_left_freely && dot(r.direction, outward) > 0) return false;
         const TextureId texture = shape.description.alpha;
-        const float opacity =
-            texture >= 0 && alpha ? alpha(texture, h.uv, h.position, h.vertices()) : 1.0f;
+        const float opacity = texture >= 0 && alpha
+                                  ? alpha(texture, {h.uv, h.position, h.vertices(), h.ng, h.facing})
+                                  : 1.0f;
         return opacity >= 1 || (opacity > 0 && ray_hash(r) < opacity);
     });
 }
@@ -168,7 +170,8 @@ void Geometry::Impl::fill_found(const EmbreeHit& found, const Ray& ray, SurfaceH
     if (found.instance == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = 0;
         hit.shape = shape_of(found.geometry, found.instance);
-        fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near), hit);
+        fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near),
+                 ray.direction, hit);
         return;
     }
     hit.instance = found.instance + 1;
@@ -179,7 +182,7 @@ void Geometry::Impl::fill_found(const EmbreeHit& found, const Ray& ray, SurfaceH
     SurfacePoint point =
         surface_point(local[hit.shape], hit.primitive, hit.barycentric, inverse.point(near));
     place(point, map, inverse);
-    fill_hit(point, hit);
+    fill_hit(point, ray.direction, hit);
 }
 
 bool Geometry::occluded(const Ray& ray) const {

@@ -48,10 +48,16 @@ struct OcclusionQuery {
     bool occluded = false;
 };
 
-/// Opacity of a shape's alpha texture at a place: (u, v) of the surface, world position, and the
-/// place in a mesh whose vertices have values.
-using AlphaLookup =
-    std::function<float(TextureId, Vec2 uv, Vec3 position, const VertexPlace& vertices)>;
+/// A place of a shape where its alpha texture is looked up.
+struct AlphaPlace {
+    Vec2 uv;
+    Vec3 position;         ///< world space
+    VertexPlace vertices;  ///< in a mesh whose vertices have values
+    Vec3 normal = {};      ///< unit, of the geometry, world space
+    float facing = -1;     ///< SurfaceHit::facing; negative where it is for all directions
+};
+/// Opacity of a shape's alpha texture at a place.
+using AlphaLookup = std::function<float(TextureId, const AlphaPlace&)>;
 
 class Geometry {
   public:

@@ -27,8 +27,9 @@ struct SurfaceHit {
     Vec3 ng;  ///< unit geometric normal on the shape's outside (emitting) side; not turned to the
               ///< viewer
     Vec3 ns;  ///< unit shading normal in the hemisphere of ng
-    Vec3 dpdu, dpdv;  ///< derivatives of the position by `uv`
-    Vec3 tangent;     ///< of shading: the mesh's own, else dpdu
+    float facing = -1;  ///< cosine, >= 0, between ns and the ray; negative where there was none
+    Vec3 dpdu, dpdv;    ///< derivatives of the position by `uv`
+    Vec3 tangent;       ///< of shading: the mesh's own, else dpdu
     Vec2 uv;
     float time = 0;
     uint32_t sample = 0;     ///< the ray's

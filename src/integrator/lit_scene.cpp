@@ -96,9 +96,8 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
 }
 
 const SceneDescription& LitScene::lit_description(const std::string& isa) {
-    const AlphaLookup alpha = [this](TextureId id, Vec2 uv, Vec3 position,
-                                     const VertexPlace& vertices) {
-        return textures.eval_float(id, {uv, position, {}, {}, vertices});
+    const AlphaLookup alpha = [this](TextureId id, const AlphaPlace& at) {
+        return textures.eval_float(id, {at.uv, at.position, {}, at.normal, at.vertices, at.facing});
     };
     geometry.set_alpha(alpha);
     light_glow_alone(description, geometry, textures);

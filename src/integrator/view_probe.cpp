@@ -34,7 +34,7 @@ bool lets_light_pass(const MaterialDescription& material) {
 }
 
 TexturePoint place_on(const SurfaceHit& hit) {
-    return {hit.uv, hit.position, {}, {}, hit.vertices()};
+    return {hit.uv, hit.position, {}, hit.ng, hit.vertices(), hit.facing};
 }
 
 /// The ray to light outside, from a hit.

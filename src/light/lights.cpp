@@ -179,11 +179,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     s.radiance = area.radiance;
     if (area.varies()) {
         const TexturePoint at = std::visit(
-            [&](const auto& e) -> TexturePoint {
-                return {
-                    e.uv(local, *point, time), point->position, {}, {}, e.vertices(local, *point)};
-            },
-            area.emitter);
+            [&](const auto& e) { return texture_point(e, local, *point, time); }, area.emitter);
         s.radiance = radiance_at(area, at, point->normal, -point->wi);
         if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
         if (is_black(s.radiance)) return std::nullopt;
@@ -301,7 +297,8 @@ Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo, float distance) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
     return impl_->softened(*area, hit.position + wo * distance, hit.time) *
-           impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()}, hit.ng, wo);
+           impl_->radiance_at(*area, {hit.uv, hit.position, {}, hit.ng, hit.vertices(), hit.facing},
+                              hit.ng, wo);
 }
 
 float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit,

@@ -61,6 +61,17 @@ struct Lights::Impl {
         const float d2 = length_squared(centre - p);
         return std::isfinite(d2) ? d2 / (d2 + sqr(area.soft_radius)) : 1;
     }
+    /// The place of a sampled point of an emitter, for textures.
+    template <typename Emitter>
+    TexturePoint texture_point(const Emitter& e, int light, const EmitterPoint& point,
+                               float time) const {
+        TexturePoint at{
+            e.uv(light, point, time), point.position, {}, point.normal, e.vertices(light, point)};
+        if (textures && textures->has_facing())
+            at.facing =
+                std::min(1.0f, std::abs(dot(e.shading_normal(light, point, time), point.wi)));
+        return at;
+    }
     /// Radiance of an area light at a place with the unit normal n, by its images, its cone and the
     /// layers above it, in a unit direction w away from it; alpha does not count.
     Rgb radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const;

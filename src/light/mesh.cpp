@@ -37,6 +37,19 @@ Vec2 barycentric(const WorldTriangle& t, Vec3 p, Vec3 w) {
     return sum > 1 ? b * (1 / sum) : b;
 }
 
+/// (u, v) in the patch of a half of it, a light, of whose barycentric coordinates b are.
+Vec2 place_on_patch(int light, Vec2 b) {
+    return light & 1 ? Vec2{1 - b.x, 1 - b.y} : b;
+}
+/// The bilinear mean of the values of a patch's corners there.
+template <typename T>
+T value_on_patch(const BilinearMesh& mesh, const std::vector<T>& values, int light, Vec2 b) {
+    const auto& k = mesh.patches[static_cast<size_t>(light / 2)];
+    const Vec2 at = place_on_patch(light, b);
+    return (values[k[0]] * (1 - at.x) + values[k[1]] * at.x) * (1 - at.y) +
+           (values[k[2]] * (1 - at.x) + values[k[3]] * at.x) * at.y;
+}
+
 }  // namespace
 
 EmissiveMesh::EmissiveMesh(const Geometry& geometry, uint32_t shape)
@@ -194,11 +207,26 @@ Vec2 EmissiveMesh::uv(int light, const EmitterPoint& point, float) const {
         return uvs[0] * (1 - b.x - b.y) + uvs[1] * b.x + uvs[2] * b.y;
     }
     const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(mesh_);
-    const Vec2 at = light & 1 ? Vec2{1 - b.x, 1 - b.y} : b;
-    if (mesh.uvs.empty()) return at;
-    const auto& k = mesh.patches[static_cast<size_t>(light / 2)];
-    return (mesh.uvs[k[0]] * (1 - at.x) + mesh.uvs[k[1]] * at.x) * (1 - at.y) +
-           (mesh.uvs[k[2]] * (1 - at.x) + mesh.uvs[k[3]] * at.x) * at.y;
+    if (mesh.uvs.empty()) return place_on_patch(light, b);
+    return value_on_patch(mesh, mesh.uvs, light, b);
+}
+
+Vec3 EmissiveMesh::shading_normal(int light, const EmitterPoint& point, float time) const {
+    const Vec2 b = point.place;
+    Vec3 n;
+    if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&mesh_)) {
+        const TriangleMesh& mesh = **triangles;
+        if (mesh.normals.empty()) return point.normal;
+        const auto& k = mesh.triangles[static_cast<size_t>(light)];
+        n = mesh.normals[k[0]] * (1 - b.x - b.y) + mesh.normals[k[1]] * b.x +
+            mesh.normals[k[2]] * b.y;
+    } else {
+        const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(mesh_);
+        if (mesh.normals.empty()) return point.normal;
+        n = value_on_patch(mesh, mesh.normals, light, b);
+    }
+    const Vec3d turned = normalize(geometry_->world_from_object(shape_, time).normal(Vec3d(n)));
+    return dot(turned, turned) > 0.5 ? turned.to_float() : point.normal;
 }
 
 VertexPlace EmissiveMesh::vertices(int light, const EmitterPoint& point) const {

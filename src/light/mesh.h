@@ -29,6 +29,8 @@ class EmissiveMesh {
     Vec2 uv(int light, const EmitterPoint& point, float time) const;
     /// The place of a sampled point in a mesh whose vertices have values.
     VertexPlace vertices(int light, const EmitterPoint& point) const;
+    /// The unit normal of shading at a sampled point, on either side.
+    Vec3 shading_normal(int light, const EmitterPoint& point, float time) const;
     /// Area of a light in world space, at the start of the shutter.
     float area(int light) const;
     /// Bounds of a light over the shutter, with the largest intensity that a radiance of 1 gives at

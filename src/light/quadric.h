@@ -25,6 +25,7 @@ class EmissiveQuadric {
     /// The surface's texture coordinates at a sampled point, as pbrt defines them.
     Vec2 uv(int light, const EmitterPoint& point, float time) const;
     VertexPlace vertices(int, const EmitterPoint&) const { return {}; }
+    Vec3 shading_normal(int, const EmitterPoint& point, float) const { return point.normal; }
     /// Area in world space, at the start of the shutter.
     float area(int light) const;
     /// Bounds of the emitter, with the intensity that a radiance of 1 gives.

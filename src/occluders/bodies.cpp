@@ -191,7 +191,8 @@ OccluderSurface OccluderBodies::flat_surface(uint32_t shape, const Affine& world
     const TextureId texture = geometry.placed[shape].description.alpha;
     const auto is_opaque = [this, texture, world_from_local](const SurfacePoint& p) {
         const Vec3 at = world_from_local.point(p.position).to_float();
-        return geometry.alpha(texture, p.uv, at, p.vertices) > kOpaque;
+        const Vec3 normal = normalize(world_from_local.normal(p.ng)).to_float();
+        return geometry.alpha(texture, {p.uv, at, p.vertices, normal}) > kOpaque;
     };
     surface.holes = {&local, is_opaque, per_edge_, sizeof is_opaque};
     return surface;

@@ -133,7 +133,8 @@ class VoxelGridBuilder {
         return std::make_unique<Tessellation>(
             local, layout_.size, scale, [&](const SurfacePoint& p) {
                 const Vec3 at = first.world_from_local.point(p.position).to_float();
-                return geometry_.alpha(texture, p.uv, at, p.vertices);
+                const Vec3 normal = normalize(first.world_from_local.normal(p.ng)).to_float();
+                return geometry_.alpha(texture, {p.uv, at, p.vertices, normal});
             });
     }
 

@@ -166,6 +166,13 @@ void SceneBuilder::light(Entity entity) {
 
 void SceneBuilder::area_light(Entity entity) {
     state_.area_light = static_cast<int>(scene_.area_lights.size());
+    if (const Parameter* radiance = entity.parameters.find("radiance", {ParameterType::texture})) {
+        if (entity.parameters.has("filename"))
+            entity.refuse("radiance",
+                          "an area light has both \"filename\" and \"radiance\"; "
+                          "expected one of them");
+        radiances_.emplace(state_.area_light, *radiance);
+    }
     scene_.area_lights.push_back(build_area_light(entity, context_));
 }
 
@@ -338,6 +345,8 @@ void SceneBuilder::finish(const SourceLocation& end) {
     place_meshes();
     textures_.build_all();
     materials_.build_all();
+    for (const auto& [light, texture] : radiances_)
+        scene_.area_lights[static_cast<size_t>(light)].image = textures_.coloured(texture);
     scene_.camera.medium = medium_named(view_.camera_medium, scene_.camera.where);
     for (PendingShape& p : pending_) resolve(p);
     if (!scene_.renders_media) drop_media();

@@ -115,7 +115,8 @@ class SceneBuilder {
     std::map<std::string, int> objects_by_name_;
     std::vector<std::string> instance_names_;
     std::set<int> used_area_lights_;
-    int object_ = -1;  ///< open object definition
+    std::map<int, Parameter> radiances_;  ///< textures that multiply that of area lights
+    int object_ = -1;                     ///< open object definition
     bool in_world_ = false;
     int directive_ = 0;
     float displacement_edge_scale_ = 1;

@@ -84,16 +84,20 @@ TextureId TextureBuilder::named(const Parameter& p, bool is_spectrum) {
     if (p.strings.size() != 1)
         throw Error(ErrorKind::scene, p.where,
                     "parameter " + in_quotes(p.name) + " expects one texture");
-    const std::string& name = p.strings[0];
+    return named(p.strings[0], p.name, p.where, is_spectrum);
+}
+
+TextureId TextureBuilder::named(const std::string& name, std::string_view parameter,
+                                const SourceLocation& where, bool is_spectrum) {
     const auto it = by_name_.find({is_spectrum, name});
     if (it != by_name_.end()) return build(declared_[it->second]);
     const std::string kind = is_spectrum ? "spectrum" : "float";
-    std::string text = "parameter " + in_quotes(p.name) + " names the " + kind + " texture " +
+    std::string text = "parameter " + in_quotes(parameter) + " names the " + kind + " texture " +
                        in_quotes(name) + ", which is not defined";
     if (by_name_.contains({!is_spectrum, name}))
         text += "; the texture of this name is of type " +
                 std::string(is_spectrum ? "float" : "spectrum");
-    throw Error(ErrorKind::scene, p.where, text + did_you_mean(name, names(is_spectrum)));
+    throw Error(ErrorKind::scene, where, text + did_you_mean(name, names(is_spectrum)));
 }
 
 TextureId TextureBuilder::constant(Rgb value, bool is_spectrum) {
@@ -218,6 +222,31 @@ MixTexture TextureBuilder::direction_mix(Declared& d) {
     return t;
 }
 
+FacingTexture TextureBuilder::facing(Declared& d) {
+    ParameterList& p = d.entity.parameters;
+    const SourceLocation where = p.where("textures", d.entity.where);
+    const std::vector<std::string> parts = p.texts("textures");
+    if (parts.empty())
+        throw Error(ErrorKind::scene, where,
+                    "a texture \"facing\" expects the names of textures in \"string textures\"");
+    FacingTexture t;
+    t.cosines = p.numbers("cosines");
+    if (t.cosines.empty())
+        for (size_t i = 0; i < parts.size(); ++i)
+            t.cosines.push_back(float(i) / std::max(1.0f, float(parts.size() - 1)));
+    const bool increase = std::ranges::is_sorted(t.cosines, std::ranges::less_equal{}) &&
+                          std::ranges::all_of(t.cosines, [](float c) { return c >= 0 && c <= 1; });
+    if (!increase || t.cosines.size() != parts.size())
+        d.entity.refuse(
+            "cosines",
+            "parameter \"cosines\" of a texture \"facing\" must have a number for each of "
+            "its " +
+                std::to_string(parts.size()) + " textures, from 0 to 1, each above the one before");
+    for (const std::string& name : parts)
+        t.textures.push_back(named(name, "textures", where, d.is_spectrum));
+    return t;
+}
+
 TextureId TextureBuilder::build(Declared& d) {
     if (d.id >= 0) return d.id;
     if (d.in_progress)
@@ -252,6 +281,8 @@ TextureId TextureBuilder::build(Declared& d) {
         d.id = add(d, t);
     } else if (type == "directionmix") {
         d.id = add(d, direction_mix(d));
+    } else if (type == "facing") {
+        d.id = add(d, facing(d));
     } else if (type == "dots") {
         DotsTexture t;
         t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
@@ -285,8 +316,9 @@ TextureId TextureBuilder::stand_in(Declared& d) {
     ParameterList& p = d.entity.parameters;
     const std::string& type = d.entity.type;
     if (type != "ptex") {
-        std::vector<std::string> known{"constant", "imagemap",     "checkerboard", "scale", "mix",
-                                       "dots",     "directionmix", "bilerp",       "ptex"};
+        std::vector<std::string> known{"constant", "imagemap", "checkerboard", "scale",
+                                       "mix",      "dots",     "directionmix", "bilerp",
+                                       "facing",   "ptex"};
         if (d.is_spectrum) {
             known.push_back("marble");
         } else {
@@ -320,6 +352,11 @@ Rgb TextureBuilder::mean_of_parts(size_t texture) const {
     if (const auto* t = std::get_if<MixTexture>(&value))
         return lerp(mean(t->amount).r, mean(t->tex1), mean(t->tex2));
     if (std::holds_alternative<AsideTexture>(value)) return Rgb{0.5f};  // over all directions
+    if (const auto* t = std::get_if<FacingTexture>(&value)) {
+        Rgb sum;
+        for (TextureId part : t->textures) sum += mean(part) / float(t->textures.size());
+        return sum;
+    }
     if (const auto* t = std::get_if<DotsTexture>(&value)) {
         constexpr float kDots = 0.151f;  // measured: four cells in ten have one
         return lerp(kDots, mean(t->outside), mean(t->inside));

@@ -40,6 +40,8 @@ class TextureBuilder {
     TextureId roughness_or_none(ParameterList& p, std::string_view name);
     TextureId roughness(ParameterList& p, std::string_view name, float otherwise);
     TextureId grey_of(const Parameter& p);
+    /// The spectrum texture that a parameter names.
+    TextureId coloured(const Parameter& p) { return named(p, true); }
     /// A value that stands for the whole texture where a single one is needed.
     Rgb mean(TextureId id);
 
@@ -55,6 +57,9 @@ class TextureBuilder {
     };
 
     TextureId named(const Parameter& p, bool is_spectrum);
+    /// The texture of a name that a parameter gives, in quotes, at a place.
+    TextureId named(const std::string& name, std::string_view parameter,
+                    const SourceLocation& where, bool is_spectrum);
     TextureId build(Declared& d);
     TextureId spectrum_or_none(ParameterList& p, std::string_view name, bool is_reflectance);
     TextureId part(Declared& d, std::string_view name, float otherwise);
@@ -62,6 +67,7 @@ class TextureBuilder {
     Rgb corner(Declared& d, std::string_view name, float otherwise);
     CheckerboardTexture checkerboard(Declared& d);
     MixTexture direction_mix(Declared& d);
+    FacingTexture facing(Declared& d);
     TextureId stand_in(Declared& d);
     TextureId add(Declared& d, decltype(TextureDescription::value) value);
     std::vector<std::string> names(bool is_spectrum) const;

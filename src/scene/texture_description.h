@@ -81,6 +81,13 @@ struct MixTexture {
 struct AsideTexture {
     Vec3 direction;  ///< unit, world space
 };
+/// Textures by the angle of sight: linear over the cosine between the direction that the surface is
+/// seen from and its interpolated normal, which no map has turned; constant beyond the first and
+/// the last cosine. Where a place is not seen from anywhere, the mean over all directions.
+struct FacingTexture {
+    std::vector<TextureId> textures;  ///< at least one
+    std::vector<float> cosines;       ///< one for each, in [0, 1], strictly increasing
+};
 /// Round dots of one texture on another, in randomly chosen unit cells of (s, t).
 struct DotsTexture {
     TextureMapping mapping;
@@ -115,7 +122,7 @@ struct TextureDescription {
     bool is_spectrum = true;
     std::variant<ConstantTexture, ImageTexture, CheckerboardTexture, ScaleTexture, MixTexture,
                  AsideTexture, DotsTexture, BilerpTexture, NoiseTexture, VertexColourTexture,
-                 CutoffTexture>
+                 CutoffTexture, FacingTexture>
         value;
     SourceLocation where;
 };

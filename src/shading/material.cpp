@@ -169,8 +169,8 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     const Material& material = materials_[static_cast<size_t>(id)];
     Bsdf found = lobes == Lobes::as_given ? material.constant : material.constant_regularized;
     if (!material.is_constant) {
-        const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng,
-                              hit.vertices()};
+        const TexturePoint at{hit.uv, hit.position,   footprint_on(hit, w, width),
+                              hit.ng, hit.vertices(), hit.facing};
         const MaterialValues values{textures, at, material.colours, adaptation_, powers_, lobes};
         found = make_bsdf(material.description, values, material.tables);
     }
@@ -190,8 +190,8 @@ PlacedMaterial MaterialStore::at(MaterialId id, const SurfaceHit& hit,
     while (id >= 0 && description(id).mix) {
         const MaterialMix& mix = *description(id).mix;
         weight *= mix.weight;
-        const float amount =
-            textures.eval_float(mix.amount, {hit.uv, hit.position, {}, hit.ng, hit.vertices()});
+        const float amount = textures.eval_float(
+            mix.amount, {hit.uv, hit.position, {}, hit.ng, hit.vertices(), hit.facing});
         const uint64_t h = hash_of_position(hit, static_cast<uint64_t>(id));
         id = mix.materials[to_unit_float(static_cast<uint32_t>(h >> 32)) < amount ? 1 : 0];
     }

@@ -156,6 +156,14 @@ struct Analyser {
     /// covariance.
     SpatialCovariance2 operator()(const AsideTexture&, const ImageSpectrum*) const { return {}; }
 
+    /// The angle of sight varies as slowly as the normal, too: what is left is the textures'.
+    SpatialCovariance2 operator()(const FacingNode& node, const ImageSpectrum*) const {
+        const FacingNeighbours n = facing_neighbours(node.between, std::max(0.0f, at.facing));
+        if (!(n.share > 0)) return of(n.first);
+        return of_sum(of(n.first), (1 - n.share) * eval(graph, n.first, at), of(n.second),
+                      n.share * eval(graph, n.second, at));
+    }
+
     /// Dots: the nearest rim counts as a straight edge.
     SpatialCovariance2 operator()(const DotsTexture& node, const ImageSpectrum*) const {
         const Vec2 st = map_to_st(node.mapping, at);
@@ -286,10 +294,15 @@ struct Analyser {
             mixture ? of_mixture() : of(node.amount) * contrast_weight(a, b);
         if (!varies) return result;
         const Rgb amount = eval(graph, node.amount, at);
-        const float wa = std::abs(luminance((Rgb(1) - amount) * a));
-        const float wb = std::abs(luminance(amount * b));
-        if (wa + wb > 0) result = result + first * (wa / (wa + wb)) + second * (wb / (wa + wb));
-        return result;
+        return result + of_sum(first, (Rgb(1) - amount) * a, second, amount * b);
+    }
+
+    /// A sum of two signals: each counts by the value that it contributes.
+    static SpatialCovariance2 of_sum(const SpatialCovariance2& first, Rgb a,
+                                     const SpatialCovariance2& second, Rgb b) {
+        const float wa = std::abs(luminance(a)), wb = std::abs(luminance(b));
+        if (!(wa + wb > 0)) return {};
+        return first * (wa / (wa + wb)) + second * (wb / (wa + wb));
     }
 };
 

@@ -88,6 +88,17 @@ struct Evaluator {
     Rgb operator()(const CutoffTexture& node) const {
         return Rgb(eval(graph, node.tex, at).r >= node.cutoff ? 1.0f : 0.0f);
     }
+    Rgb operator()(const FacingNode& node) const {
+        if (!(at.facing >= 0)) {
+            Rgb sum;
+            for (size_t i = 0; i < node.mean_shares.size(); ++i)
+                sum += node.mean_shares[i] * eval(graph, node.between.textures[i], at);
+            return sum;
+        }
+        const FacingNeighbours n = facing_neighbours(node.between, at.facing);
+        const Rgb first = eval(graph, n.first, at);
+        return n.share > 0 ? lerp(n.share, first, eval(graph, n.second, at)) : first;
+    }
     /// Non-finite values, which parameters near the largest numbers there are give, become 0.
     static Rgb grey(float value) { return Rgb(std::isfinite(value) ? value : 0.0f); }
     Rgb operator()(const ScaleNode& node) const {
@@ -127,6 +138,34 @@ TextureId active_texture(const DotsTexture& node, const TexturePoint& at) {
     const bool is_inside =
         center && sqr(st.x - center->x) + sqr(st.y - center->y) < sqr(kDotRadius);
     return is_inside ? node.inside : node.outside;
+}
+
+FacingNeighbours facing_neighbours(const FacingTexture& texture, float cosine) {
+    const auto& cosines = texture.cosines;
+    const auto above = std::ranges::upper_bound(cosines, cosine);
+    if (above == cosines.begin()) return {texture.textures.front(), texture.textures.front(), 0};
+    if (above == cosines.end()) return {texture.textures.back(), texture.textures.back(), 0};
+    const auto i = static_cast<size_t>(above - cosines.begin());
+    return {texture.textures[i - 1], texture.textures[i],
+            (cosine - cosines[i - 1]) / (cosines[i] - cosines[i - 1])};
+}
+
+std::vector<float> facing_mean_shares(const FacingTexture& texture) {
+    // The density of the cosine c is 2 c. Between two neighbours a and b the second one has the
+    // share (c - a) / (b - a), the integral of which over the density is
+    // (2 (b^3 - a^3) / 3 - a (b^2 - a^2)) / (b - a).
+    const auto& cosines = texture.cosines;
+    std::vector<double> shares(cosines.size(), 0.0);
+    shares.front() += sqr(double(cosines.front()));
+    shares.back() += 1 - sqr(double(cosines.back()));
+    for (size_t i = 1; i < cosines.size(); ++i) {
+        const double a = cosines[i - 1], b = cosines[i];
+        const double all = b * b - a * a;
+        const double second = (2 * (b * b * b - a * a * a) / 3 - a * all) / (b - a);
+        shares[i - 1] += all - second;
+        shares[i] += second;
+    }
+    return {shares.begin(), shares.end()};
 }
 
 Rgb vertex_colour(const VertexColourTexture& node, const VertexPlace& at) {

@@ -36,9 +36,20 @@ struct ScaleNode {
 struct MixNode {
     TextureId tex1 = -1, tex2 = -1, amount = -1;
 };
-using TextureNode =
-    std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode, AsideTexture,
-                 DotsTexture, BilerpTexture, NoiseTexture, VertexColourTexture, CutoffTexture>;
+struct FacingNode {
+    FacingTexture between;
+    /// Share of each texture in the mean over all directions, each counting by its cosine.
+    std::vector<float> mean_shares;
+};
+/// The two neighbours that a texture by the angle of sight is between at a cosine, and the share of
+/// the second; the same one twice beyond the ends.
+struct FacingNeighbours {
+    TextureId first = -1, second = -1;
+    float share = 0;
+};
+using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
+                                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture,
+                                 VertexColourTexture, CutoffTexture, FacingNode>;
 
 struct TextureGraph {
     std::vector<TextureNode> nodes;  ///< one per TextureId
@@ -71,6 +82,12 @@ Rgb bilerp(const BilerpTexture& node, Vec2 st);
 /// The texture that the dots show at this point: the one inside of a dot, or the one around the
 /// dots.
 TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
+
+/// The neighbours at a cosine in [0, 1].
+FacingNeighbours facing_neighbours(const FacingTexture& texture, float cosine);
+/// Shares of the textures in the mean over a hemisphere, each direction counting by its cosine;
+/// their sum is 1.
+std::vector<float> facing_mean_shares(const FacingTexture& texture);
 
 /// The colour of a mesh's vertices at a place, or their alpha; 1 where there are none.
 Rgb vertex_colour(const VertexColourTexture& node, const VertexPlace& at);

@@ -83,6 +83,11 @@ class GraphBuilder {
     double lookups_of(const NoiseTexture&) const { return 1; }
     double lookups_of(const VertexColourTexture&) const { return 1; }
     double lookups_of(const CutoffTexture& n) const { return 1 + lookups_of(n.tex); }
+    double lookups_of(const FacingNode& n) const {
+        double sum = 1;
+        for (TextureId id : n.between.textures) sum += lookups_of(id);
+        return sum;
+    }
     double lookups_of(const ScaleNode& n) const {
         return 1 + lookups_of(n.tex) + lookups_of(n.scale);
     }
@@ -143,6 +148,16 @@ class GraphBuilder {
         if (value) return ConstantNode{Rgb(value->r >= t.cutoff ? 1.0f : 0.0f)};
         return t;
     }
+    TextureNode make_node(const FacingTexture& t, const TextureDescription&, int depth) {
+        const TextureNode first = build(t.textures.front(), depth + 1);
+        bool is_one = constant(first);
+        for (TextureId id : t.textures) {
+            const Rgb* value = constant(build(id, depth + 1));
+            is_one = is_one && value && *value == *constant(first);
+        }
+        if (is_one) return first;
+        return FacingNode{t, facing_mean_shares(t)};
+    }
     TextureNode make_node(const ScaleTexture& t, const TextureDescription&, int depth) {
         const TextureNode& tex = build(t.tex, depth + 1);
         const TextureNode& scale = build(t.scale, depth + 1);
@@ -199,6 +214,12 @@ float TextureStore::eval_float(TextureId id, const TexturePoint& at) const {
 
 bool TextureStore::is_constant(TextureId id) const {
     return std::holds_alternative<ConstantNode>(impl_->graph.nodes[size_t(id)]);
+}
+
+bool TextureStore::has_facing() const {
+    return std::ranges::any_of(impl_->graph.nodes, [](const TextureNode& node) {
+        return std::holds_alternative<FacingNode>(node);
+    });
 }
 
 Rgb TextureStore::mean(TextureId id) const {

@@ -28,6 +28,9 @@ struct TexturePoint {
     PointFootprint footprint = {};
     Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
     VertexPlace vertices = {};
+    /// Cosine between the interpolated normal and the direction that the place is seen from, on
+    /// either side; negative where there is none.
+    float facing = -1;
 };
 
 struct TextureGraph;
@@ -61,6 +64,8 @@ class TextureStore {
     /// The red channel of a texture; for float textures, where all channels are equal.
     float eval_float(TextureId id, const TexturePoint& at) const;
     bool is_constant(TextureId id) const;
+    /// Whether any texture hangs on the angle of sight.
+    bool has_facing() const;
     /// Mean of the texture over (u, v) in [0, 1]^2: of an image's texels, of other textures at 64 x
     /// 64 points.
     Rgb mean(TextureId id) const;

@@ -43,8 +43,7 @@ SceneDescription pile(int with_alpha) {
 
 TEST(GeometryAlpha, HolesLetRaysThroughToWhatLiesBehind) {
     Geometry g(pile(3));
-    g.set_alpha(
-        [](TextureId, Vec2 uv, Vec3, const VertexPlace&) { return uv.x < 0.5f ? 1.0f : 0.0f; });
+    g.set_alpha([](TextureId, const AlphaPlace& at) { return at.uv.x < 0.5f ? 1.0f : 0.0f; });
     SurfaceHit hit;
     ASSERT_TRUE(g.intersect({{-0.5f, 0.2f, -1}, {0, 0, 1}}, hit));
     EXPECT_EQ(hit.shape, 0u);
@@ -115,7 +114,7 @@ TEST(GeometryAlpha, CountsOnWhatMayBeAnInterfaceToo) {
     scene.materials[2].mix = MaterialMix{{0, 1}, 0};
     scene.shapes[0].material = 2;
     Geometry g(scene);
-    g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 0.0f; });
+    g.set_alpha([](TextureId, const AlphaPlace&) { return 0.0f; });
     SurfaceHit hit;
     ASSERT_TRUE(g.intersect({{0.5f, 0.2f, -1}, {0, 0, 1}}, hit));
     EXPECT_EQ(hit.shape, 1u);
@@ -144,7 +143,7 @@ TEST(GeometryAlpha, WithoutALookupEverythingIsOpaque) {
 TEST(GeometryAlpha, PartialAlphaStopsItsShareOfRaysAndTheSameOnesEachTime) {
     for (const float opacity : {0.1f, 0.5f, 0.8f}) {
         Geometry g(pile(2));
-        g.set_alpha([opacity](TextureId, Vec2, Vec3, const VertexPlace&) { return opacity; });
+        g.set_alpha([opacity](TextureId, const AlphaPlace&) { return opacity; });
         Random random(3);
         constexpr int kRays = 20000;
         int count[3] = {}, blocked = 0;
@@ -175,7 +174,7 @@ TEST(GeometryAlpha, PartialAlphaStopsItsShareOfRaysAndTheSameOnesEachTime) {
 // The same interval as above.
 TEST(GeometryAlpha, PartialAlphaIsDrawnForEachSample) {
     Geometry g(pile(1));
-    g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 0.5f; });
+    g.set_alpha([](TextureId, const AlphaPlace&) { return 0.5f; });
     constexpr int kRays = 20000;
     int stopped = 0;
     for (int i = 0; i < kRays; ++i) {
@@ -205,16 +204,16 @@ TEST(GeometryAlpha, CurvedAndInstancedShapesHaveItToo) {
     for (const float x : {-5.0f, 5.0f}) {
         SurfaceHit hit;
         const Ray ray{{x, 0.3f, -9}, {0, 0, 1}, 0.5f};
-        g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 1.0f; });
+        g.set_alpha([](TextureId, const AlphaPlace&) { return 1.0f; });
         EXPECT_TRUE(g.intersect(ray, hit)) << x;
         EXPECT_TRUE(g.occluded(ray)) << x;
         // The half that is turned to the ray is a hole; the far one is met from inside.
         g.set_alpha(
-            [](TextureId, Vec2, Vec3 p, const VertexPlace&) { return p.z > 0.3f ? 1.0f : 0.0f; });
+            [](TextureId, const AlphaPlace& at) { return at.position.z > 0.3f ? 1.0f : 0.0f; });
         ASSERT_TRUE(g.intersect(ray, hit)) << x;
         EXPECT_GT(hit.position.z, 0.3f);
         EXPECT_GT(dot(hit.ng, ray.direction), 0);
-        g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 0.0f; });
+        g.set_alpha([](TextureId, const AlphaPlace&) { return 0.0f; });
         EXPECT_FALSE(g.intersect(ray, hit)) << x;
         EXPECT_FALSE(g.occluded(ray)) << x;
     }
@@ -234,8 +233,7 @@ TEST(GeometryAlpha, TheVoxelGridHasTheHoles) {
     scene.shapes.resize(1);
     Geometry whole(scene), cut(scene);
     // The surface is opaque below v = 1/2 only.
-    cut.set_alpha(
-        [](TextureId, Vec2 uv, Vec3, const VertexPlace&) { return uv.y < 0.5f ? 1.0f : 0.0f; });
+    cut.set_alpha([](TextureId, const AlphaPlace& at) { return at.uv.y < 0.5f ? 1.0f : 0.0f; });
     VoxelGridOptions options;
     options.width = 40;
     options.box = {{-2, -2, -2}, {2, 2, 2}};
@@ -252,8 +250,7 @@ TEST(GeometryAlpha, HolesHaveOutlinesAndSquaresBehindThemNone) {
     scene.textures = {texture(0.5f)};
     Geometry g(scene);
     // The surface is opaque for x below 0 only; a veil of a tenth elsewhere counts as nothing.
-    g.set_alpha(
-        [](TextureId, Vec2 uv, Vec3, const VertexPlace&) { return uv.x < 0.5f ? 1.0f : 0.1f; });
+    g.set_alpha([](TextureId, const AlphaPlace& at) { return at.uv.x < 0.5f ? 1.0f : 0.1f; });
     const OccluderQuery query(g);
     EdgeMeasure nearest;
     nearest.b = 1;
@@ -287,7 +284,7 @@ TEST(GeometryAlpha, OpaqueTrianglesBesideEachOtherHaveNoOutlineBetweenThem) {
         scene.shapes[0].alpha = 0;
         scene.textures = {texture(0.5f)};
         Geometry g(scene);
-        g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 1.0f; });
+        g.set_alpha([](TextureId, const AlphaPlace&) { return 1.0f; });
         EXPECT_EQ(OccluderQuery(g).edges(), 4 * per_edge);
     }
 }

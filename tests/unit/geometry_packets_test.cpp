@@ -166,7 +166,7 @@ TEST_P(RayPackets, GiveTheBitsOfSingleRaysThroughAlpha) {
     scene.textures = {half};
     for (size_t i = 0; i < scene.shapes.size(); i += 2) scene.shapes[i].alpha = 0;
     Geometry g{scene, GetParam()};
-    g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 0.5f; });
+    g.set_alpha([](TextureId, const AlphaPlace&) { return 0.5f; });
     EXPECT_GT(expect_bits_of_single_rays(g, 21), 10000);
 }
 

@@ -76,7 +76,7 @@ TEST(GeometryRayKinds, WithAlphaAndInInstancesToo) {
     scene.objects.push_back({"pile", shapes});
     scene.instances.push_back({0, AnimatedTransform(), {}});
     Geometry g(scene);
-    g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 1.0f; });
+    g.set_alpha([](TextureId, const AlphaPlace&) { return 1.0f; });
     expect_own_squares(g, "instanced square ");
 }
 

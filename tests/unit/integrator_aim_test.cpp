@@ -104,9 +104,8 @@ TEST_P(Aim, NoLampHidesItself) {
         scene.add(lamp.shape, Rgb(1));
         if (GetParam().has_windows) add_hidden_windows(scene, center);
         scene.build();
-        scene.geometry->set_alpha([](TextureId texture, Vec2, Vec3, const VertexPlace&) {
-            return texture == kLamp ? 1.0f : 0.0f;
-        });
+        scene.geometry->set_alpha(
+            [](TextureId texture, const AlphaPlace&) { return texture == kLamp ? 1.0f : 0.0f; });
         Rng rng(7);
         int found = 0, hidden = 0;
         for (int i = 0; i < 20000; ++i) {

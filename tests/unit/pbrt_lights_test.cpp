@@ -213,6 +213,21 @@ Shape "sphere"
     EXPECT_EQ(constant_as<ImageTexture>(scene, area.image).file.filename(), "x.exr");
 }
 
+TEST(SceneLights, AreaLightsShineByTextures) {
+    const std::string light =
+        "AreaLightSource \"diffuse\" \"rgb L\" [ 2 2 2 ] \"texture radiance\" ";
+    const auto scene = read_world(
+        light +
+        "\"t\"\nShape \"sphere\"\nTexture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ 1 0 3 ]");
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const AreaLightDescription& area = scene.area_lights.at(0);
+    EXPECT_EQ(area.radiance, Rgb(2));
+    EXPECT_EQ(constant_as<ConstantTexture>(scene, area.image).value, Rgb(1, 0, 3));
+    EXPECT_TRUE(contains(world_error(light + "\"no\""), "names the spectrum texture \"no\""));
+    EXPECT_TRUE(contains(world_error(light + "\"no\" \"string filename\" \"x.exr\""),
+                         "both \"filename\" and \"radiance\""));
+}
+
 TEST(SceneLights, GoniometricLightsWithoutAnImageAreRound) {
     const auto scene = read_world("LightSource \"goniometric\"");
     EXPECT_FALSE(std::get<GoniometricLight>(scene.lights.at(0).value).image);

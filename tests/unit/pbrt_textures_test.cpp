@@ -118,6 +118,35 @@ TEST(SceneTextures, DirectionmixIsAMixByTheNormal) {
                  "must not be zero"));
 }
 
+TEST(SceneTextures, FacingTakesTexturesByTheCosine) {
+    const std::string parts =
+        "Texture \"a\" \"float\" \"constant\" \"float value\" 0.1\n"
+        "Texture \"b\" \"float\" \"constant\" \"float value\" 0.2\n"
+        "Texture \"c\" \"spectrum\" \"constant\"\n"
+        "Texture \"t\" \"float\" \"facing\" ";
+    const auto scene = read_world(
+        parts + "\"string textures\" [ \"a\" \"b\" \"a\" ] \"float cosines\" [ 0.1 0.3 0.9 ]");
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto& facing = std::get<FacingTexture>(texture(scene).value);
+    EXPECT_EQ(facing.cosines, (std::vector<float>{0.1f, 0.3f, 0.9f}));
+    ASSERT_EQ(facing.textures.size(), 3u);
+    EXPECT_EQ(scene.textures[size_t(facing.textures[1])].name, "b");
+    EXPECT_EQ(facing.textures[0], facing.textures[2]);
+    const auto even = read_world(parts + "\"string textures\" [ \"a\" \"b\" \"a\" ]");
+    EXPECT_EQ(std::get<FacingTexture>(texture(even).value).cosines,
+              (std::vector<float>{0, 0.5f, 1}));
+    for (const auto& [text, expected] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"", "names of textures"},
+             {"\"string textures\" \"c\"", "of this name is of type spectrum"},
+             {"\"string textures\" [ \"a\" \"b\" ] \"float cosines\" [ 0 0.5 1 ]",
+              "each of its 2 textures"},
+             {"\"string textures\" [ \"a\" \"b\" ] \"float cosines\" [ 0.5 0.5 ]",
+              "each above the one before"},
+             {"\"string textures\" [ \"a\" \"b\" ] \"float cosines\" [ 0 1.5 ]", "from 0 to 1"},
+             {"\"string textures\" [ \"a\" \"t\" ]", "refers to itself"}})
+        EXPECT_TRUE(contains(world_error(parts + text), expected)) << text;
+}
+
 TEST(SceneTextures, NoiseTakesItsParameters) {
     const auto noise = [](const std::string& text) {
         const auto scene = read_world("Scale 2 2 2\nTexture \"t\" " + text);

@@ -192,8 +192,8 @@ TEST(VertexColours, AlphaLetsRaysPass) {
         scene.add(CutoffTexture{scene.add(VertexColourTexture{true}, false), 0.5f}, false);
     const TextureStore store(scene.description);
     Geometry geometry(scene.description);
-    geometry.set_alpha([&](TextureId id, Vec2 uv, Vec3 p, const VertexPlace& vertices) {
-        return store.eval_float(id, {uv, p, {}, {}, vertices});
+    geometry.set_alpha([&](TextureId id, const AlphaPlace& at) {
+        return store.eval_float(id, {at.uv, at.position, {}, {}, at.vertices});
     });
     SurfaceHit hit;
     EXPECT_TRUE(geometry.intersect({{0.2f, 0.3f, 1}, {0, 0, -1}}, hit));
