@@ -193,9 +193,9 @@ bool PathTracer::light_and_scatter(const Surface& surface, Vec3 normal, PathVert
     if (is_led && sky_guide_) lit_.sky_cell = sky_guide_->at(hit.position, normal);
     if (is_led && lamp_guide_) lit_.lamp_factors = lamp_guide_->at(hit.position, normal);
     const bool may_learn = normal != Vec3{} && has_diffuse_lobe(bsdf);
-    cell_ = path_guide_ && may_learn && depth_ < max_depth_
-                ? path_guide_->at({hit.position, normal})
-                : nullptr;
+    path_mixture_ = path_guide_ && may_learn && depth_ < max_depth_
+                        ? path_guide_->at({hit.position, normal})
+                        : PathGuideMixture{};
     if (vertex) {
         vertex->is_specular = is_specular(bsdf);
         if (may_learn) vertex->guided_normal = normal;

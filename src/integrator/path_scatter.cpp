@@ -26,7 +26,8 @@ RayKind kind_of(const Bsdf& bsdf, LobeKind lobe) {
 }  // namespace
 
 float PathTracer::mixed_pdf(float own, Vec3 wi) const {
-    if (cell_) own = std::lerp(own, path_guide_->pdf(*cell_, wi), cell_->share);
+    const float by_paths = path_mixture_.share();
+    if (by_paths > 0) own = std::lerp(own, path_mixture_.pdf(wi), by_paths);
     const float share = guide_.share();
     return share > 0 ? (1 - share) * own + share * guide_.pdf(wi) : own;
 }
@@ -38,15 +39,16 @@ BsdfValue PathTracer::eval_direction(const Surface& surface, Vec3 wi_local, Vec3
 
 std::optional<BsdfSample> PathTracer::sample_direction(const Surface& surface, float u_lobe,
                                                        Vec2 u) {
-    const float by_caustics = guide_.share(), by_cell = cell_ ? cell_->share : 0;
-    const float share = by_caustics + (1 - by_caustics) * by_cell;
+    const float by_caustics = guide_.share(), by_paths = path_mixture_.share();
+    const float share = by_caustics + (1 - by_caustics) * by_paths;
     if (!(share > 0)) return sample(surface.bsdf, surface.wo, u_lobe, u);
     std::optional<BsdfSample> s;
     BsdfValue own;
     Vec3 wi;
     if (u_lobe < share) {
-        wi = u_lobe < by_caustics ? guide_.sample(u_lobe / by_caustics, u)
-                                  : path_guide_->sample(*cell_, u);
+        wi = u_lobe < by_caustics
+                 ? guide_.sample(u_lobe / by_caustics, u)
+                 : path_mixture_.sample((u_lobe - by_caustics) / (share - by_caustics), u);
         s = BsdfSample{};
         s->wi = surface.frame.to_local(wi);
         s->lobe = s->wi.z * surface.wo.z > 0 ? LobeKind::diffuse_reflection

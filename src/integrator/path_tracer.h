@@ -323,13 +323,13 @@ class PathTracer {
     float roulette_scale_ = 1;  // takes factors of refraction and guide out of beta_ for roulette
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    int depth_ = 0;                 // scattering events so far
-    std::optional<Body> body_;      // that the path walks through
-    uint32_t steps_in_bodies_ = 0;  // so far, in all of them
-    float glow_ = 0;                // luminance from media since the last vertex, for the record
-    Vec3 camera_origin_;            // start of the path
-    GuideMixture guide_;            // guide to caustics at the current vertex
-    const PathGuideCell* cell_ = nullptr;  // where light comes from there; null: not known
+    int depth_ = 0;                  // scattering events so far
+    std::optional<Body> body_;       // that the path walks through
+    uint32_t steps_in_bodies_ = 0;   // so far, in all of them
+    float glow_ = 0;                 // luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;             // start of the path
+    GuideMixture guide_;             // guide to caustics at the current vertex
+    PathGuideMixture path_mixture_;  // where light comes from there
     Departure departure_{{}, {}, {}, 0, 0, -1, -1, 0};
     float mirror_share_ = 0;  // probability of sampling light by a mirror at the current vertex
     // Light draw of the vertex to come, begun before that vertex is known.

@@ -34,9 +34,28 @@ constexpr size_t kFewestCellBounces = 256, kMostCellBounces = 8192;
 constexpr double kShareOfAll =
     0.2;  // weight of what all cells tell in the choice of a cell's share
 constexpr double kMostRelative = 20;  // brightness over its block's that counts
+/// Share of the noise without spots that may be left with them.
+constexpr double kSpotsAreWorth = 0.9;
+/// Bounces that the mean over all cells counts for in what a cell finds in spots.
+constexpr double kSpotHitsOfAll = 4;
+
+/// Shares of the samples that may follow the guide, and of these the shares that may go to spots.
+struct Choice {
+    float guided = 0, to_spots = 0;
+};
 constexpr std::array<float, 5> kShares{0, 0.3f, 0.5f, 0.7f, 0.85f};
-/// Second moments of the light that bounces find, by the share of a guide.
-using Moments = std::array<double, kShares.size()>;
+constexpr std::array<float, 3> kSpotShares{0.25f, 0.5f, 0.75f};
+/// Those without spots come first.
+constexpr auto kChoices = [] {
+    std::array<Choice, kShares.size() + (kShares.size() - 1) * kSpotShares.size()> choices;
+    size_t n = 0;
+    for (float share : kShares) choices[n++] = {share, 0};
+    for (size_t i = 1; i < kShares.size(); ++i)
+        for (float to_spots : kSpotShares) choices[n++] = {kShares[i], to_spots};
+    return choices;
+}();
+/// Second moments of the light that bounces find, by choice.
+using Moments = std::array<double, kChoices.size()>;
 
 /// Inverse of square_to_disc.
 Vec2 disc_to_square(Vec2 d) {
@@ -73,24 +92,46 @@ std::vector<float> light_of_bounces(const PathLesson& lesson) {
     return result;
 }
 
+/// The spots that the bounces of a lesson, of which `numbers` may be guided, tell of.
+BrightSpots find_spots(const PathLesson& lesson, std::span<const uint32_t> numbers,
+                       std::span<const float> light) {
+    std::vector<SpotHit> hits;
+    double noise = 0;
+    for (uint32_t i : numbers) {
+        const GuideBounce& b = lesson.bounces[i];
+        // The moment is that of the BSDF alone, whatever led the path
+        const float moment = sqr(b.carried * b.value * light[i]) / (b.bsdf_pdf * b.path_pdf);
+        if (!std::isfinite(moment) || !(moment > 0)) continue;
+        noise += double(moment);
+        if (b.to >= 0)
+            hits.push_back({lesson.places[b.from].position, lesson.places[size_t(b.to)].position,
+                            light[i], moment, b.path_pdf, b.bsdf_pdf, b.path});
+    }
+    return BrightSpots(hits, noise, numbers.size());
+}
+
 /// A bounce as its cell sees it.
 struct CellBounce {
     const GuideBounce& bounce;
-    float light;    ///< luminance of the light that it found
-    float cosine;   ///< to the cell's normal
-    Vec2 square{};  ///< place of its direction, where the cosine is above 0
+    float light;          ///< luminance of the light that it found
+    float cosine;         ///< to the cell's normal
+    Vec2 square{};        ///< place of its direction, where the cosine is above 0
+    float by_spots = -1;  ///< density of its direction among those to spots; -1: it sees none
+    bool ends_in_spot = false;
 };
 
 /// The directions of a cell, and how much they help.
 struct Learnt {
     DirectionHistogram directions;
-    Moments moments{};  ///< each bounce counts the same
-    Moments noise{};    ///< by what the bounces are for the image
+    Moments moments{};             ///< each bounce counts the same
+    Moments of_spots{};            ///< the same, of the bounces that end in spots
+    Moments noise{};               ///< by what the bounces are for the image
+    double bounces = 0, hits = 0;  ///< in all, and those that end in spots
 };
 
 /// Learns the directions of a cell. The moments are of densities that half of the paths made,
 /// measured by the other half.
-Learnt learn_directions(const std::vector<CellBounce>& bounces) {
+Learnt learn_directions(const std::vector<CellBounce>& bounces, size_t choices) {
     std::array<std::vector<SquarePoint>, 2> points;
     std::vector<SquarePoint> all;
     for (const CellBounce& c : bounces) {
@@ -100,26 +141,48 @@ Learnt learn_directions(const std::vector<CellBounce>& bounces) {
     }
     Learnt learnt;
     learnt.directions = DirectionHistogram(all);
+    learnt.bounces = double(bounces.size());
     const std::array<DirectionHistogram, 2> halves{DirectionHistogram(points[0]),
                                                    DirectionHistogram(points[1])};
     for (const CellBounce& c : bounces) {
         const GuideBounce& b = c.bounce;
-        const float by_guide = c.cosine > 0 ? cosine_hemisphere_pdf(c.cosine) *
-                                                  halves[1 - b.path % 2].density(c.square)
-                                            : 0;
+        const float by_cell = c.cosine > 0 ? cosine_hemisphere_pdf(c.cosine) *
+                                                 halves[1 - b.path % 2].density(c.square)
+                                           : 0;
         const double found = double(b.value) * double(c.light);
         // Few bright paths would hide what the others tell: they count for less
         const double relative = double(b.carried) * found / double(b.path_pdf);
         const double counts = double(b.carried) * std::min(1.0, kMostRelative / relative);
-        for (size_t i = 0; i < kShares.size(); ++i) {
-            const double pdf = double(std::lerp(b.bsdf_pdf, by_guide, kShares[i]));
+        learnt.hits += c.ends_in_spot ? 1 : 0;
+        for (size_t i = 0; i < choices; ++i) {
+            const Choice& choice = kChoices[i];
+            const float to_spots = c.by_spots >= 0 ? choice.to_spots : 0;
+            const float by_guide =
+                to_spots > 0 ? std::lerp(by_cell, c.by_spots, to_spots) : by_cell;
+            const double pdf = double(std::lerp(b.bsdf_pdf, by_guide, choice.guided));
             const double moment = found * found / (pdf * double(b.path_pdf));
             if (!std::isfinite(moment) || !(found > 0)) continue;
-            learnt.moments[i] += moment;
+            (c.ends_in_spot ? learnt.of_spots : learnt.moments)[i] += moment;
             learnt.noise[i] += moment * counts * counts;
         }
     }
     return learnt;
+}
+
+/// Chooses the share of a cell, by what all cells tell, too, as its own bounces are few.
+size_t best_choice(const Learnt& cell, const Learnt& all, size_t choices) {
+    // A cell that has few bounces to spots has them in the measure of all cells, one that has none
+    // of many sees no spot
+    const double expected = cell.bounces * all.hits / all.bounces;
+    const double own = cell.hits + expected, shared = kSpotHitsOfAll / (own + kSpotHitsOfAll);
+    const double alike = all.moments[0] > 0 ? cell.moments[0] / all.moments[0] : 0;
+    Moments m{};
+    for (size_t i = 0; i < choices; ++i)
+        m[i] = cell.moments[i] + std::lerp(cell.of_spots[i], alike * all.of_spots[i], shared);
+    const double own_moment = m[0];
+    for (size_t i = 0; i < choices; ++i)
+        m[i] += kShareOfAll * own_moment * all.noise[i] / all.noise[0];
+    return static_cast<size_t>(std::min_element(m.begin(), m.begin() + int(choices)) - m.begin());
 }
 
 }  // namespace
@@ -147,6 +210,7 @@ PathGuide::PathGuide(const LitScene& scene, const CausticGuide& caustics, const 
     if (!pays) {
         tree_ = PlaceTree();
         cells_.clear();
+        spots_ = BrightSpots();
         outcome_.state = GuideState::gave_up;
         return;
     }
@@ -154,21 +218,25 @@ PathGuide::PathGuide(const LitScene& scene, const CausticGuide& caustics, const 
     outcome_.bytes = tree_.memory() + cells_.capacity() * sizeof(PathGuideCell);
 }
 
-Vec3 PathGuide::sample(const PathGuideCell& cell, Vec2 u) const {
-    const Vec2 place = cell.directions.sample(u);
-    return normalize(cell.frame.to_world(square_to_cosine_hemisphere(place)));
+Vec3 PathGuideMixture::sample(float choice, Vec2 u) const {
+    if (choice < spot_share_) return spots_.sample(u);
+    const Vec2 place = cell_->directions.sample(u);
+    return normalize(cell_->frame.to_world(square_to_cosine_hemisphere(place)));
 }
 
-float PathGuide::pdf(const PathGuideCell& cell, Vec3 w) const {
-    const Vec3 local = cell.frame.to_local(w);
+float PathGuideMixture::pdf(Vec3 w) const {
+    const float by_spots = spot_share_ > 0 ? spot_share_ * spots_.pdf(w) : 0;
+    const Vec3 local = cell_->frame.to_local(w);
     const std::optional<Vec2> place = to_square(local);
-    if (!place) return 0;
-    return cosine_hemisphere_pdf(local.z) * cell.directions.density(*place);
+    if (!place) return by_spots;
+    return by_spots +
+           (1 - spot_share_) * cosine_hemisphere_pdf(local.z) * cell_->directions.density(*place);
 }
 
 double PathGuide::learn(const PathLesson& lesson) {
     tree_ = PlaceTree();
     cells_.clear();
+    spots_ = BrightSpots();
     // Sort the bounces that a guide may lead by place
     std::vector<PlaceTree::Place> places;
     std::vector<uint32_t> numbers, order;
@@ -183,6 +251,8 @@ double PathGuide::learn(const PathLesson& lesson) {
     tree_ = PlaceTree(places, std::clamp(root, kFewestCellBounces, kMostCellBounces), order, parts);
     // Learn the directions of each cell
     const std::vector<float> light = light_of_bounces(lesson);
+    spots_ = find_spots(lesson, numbers, light);
+    const size_t choices = spots_.is_empty() ? kShares.size() : kChoices.size();
     cells_.resize(parts.size());
     std::vector<Learnt> learnt(parts.size());
     parallel_for(int64_t(parts.size()), [&](int64_t k) {
@@ -195,24 +265,48 @@ double PathGuide::learn(const PathLesson& lesson) {
         for (uint32_t i : parts[size_t(k)]) {
             const GuideBounce& b = lesson.bounces[numbers[i]];
             const Vec3 local = frame.to_local(b.direction);
-            bounces.push_back({b, light[numbers[i]], local.z, to_square(local).value_or(Vec2{})});
+            CellBounce c{b, light[numbers[i]], local.z, to_square(local).value_or(Vec2{})};
+            if (!spots_.is_empty()) {
+                const auto view = spots_.seen_from(places[i].position, places[i].normal);
+                if (!view.is_empty()) c.by_spots = view.pdf(b.direction);
+                c.ends_in_spot = b.to >= 0 && spots_.holds(lesson.places[size_t(b.to)].position);
+            }
+            bounces.push_back(c);
         }
-        learnt[size_t(k)] = learn_directions(bounces);
+        learnt[size_t(k)] = learn_directions(bounces, choices);
     });
-    // Choose each cell's share, by what all cells tell, too, as its own bounces are few
-    Moments all{};
-    for (const Learnt& l : learnt)
-        for (size_t i = 0; i < all.size(); ++i) all[i] += l.noise[i];
-    if (!(all[0] > 0)) return 1;
+    // Choose each cell's share
+    Learnt all;
+    for (const Learnt& l : learnt) {
+        for (size_t i = 0; i < choices; ++i) {
+            all.moments[i] += l.moments[i];
+            all.of_spots[i] += l.of_spots[i];
+            all.noise[i] += l.noise[i];
+        }
+        all.bounces += l.bounces;
+        all.hits += l.hits;
+    }
+    if (!(all.noise[0] > 0)) return 1;
     double before = 0, after = 0;
+    std::vector<Choice> chosen;
+    // Spots that take next to nothing away are left out: what they are known by is the same noise
+    for (const size_t most : {kShares.size(), choices}) {
+        double left = 0;
+        std::vector<Choice> best;
+        before = 0;
+        for (const Learnt& l : learnt) {
+            const size_t i = best_choice(l, all, most);
+            before += l.noise[0];
+            left += l.noise[i];
+            best.push_back(kChoices[i]);
+        }
+        if (!chosen.empty() && !(left < kSpotsAreWorth * after)) continue;
+        after = left;
+        chosen = std::move(best);
+    }
     for (size_t k = 0; k < cells_.size(); ++k) {
-        Moments m = learnt[k].moments;
-        const double own = m[0];
-        for (size_t i = 0; i < m.size(); ++i) m[i] += kShareOfAll * own * all[i] / all[0];
-        const auto best = static_cast<size_t>(std::min_element(m.begin(), m.end()) - m.begin());
-        before += learnt[k].noise[0];
-        after += learnt[k].noise[best];
-        cells_[k].share = kShares[best];
+        cells_[k].share = chosen[k].guided;
+        cells_[k].spot_share = chosen[k].to_spots;
         cells_[k].directions = learnt[k].directions;
     }
     // Tell what is left of the second moment of paths, of which bounces make a part

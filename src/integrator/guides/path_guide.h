@@ -6,7 +6,8 @@
 /// light-transport simulation"), and follows the root of the mean square of what they bring (Rath
 /// et al. 2020, "Variance-aware path guiding"). What a direction brings is not one path's estimate
 /// of it, but the mean of many paths that met surfaces around the place where it ends
-/// (`RadianceCache`): so few paths suffice. BSDF and guide share the samples, so that estimates
+/// (`RadianceCache`): so few paths suffice. Small spots that much light comes from are balls that
+/// all cells share (`BrightSpots`). BSDF and guide share the samples, so that estimates
 /// stay unbiased whatever it holds. Where it would not pay, it is dropped after a short trial.
 #pragma once
 
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "core/frame.h"
+#include "integrator/guides/bright_spots.h"
 #include "integrator/guides/direction_histogram.h"
 #include "integrator/guides/guide_outcome.h"
 #include "integrator/guides/path_lesson.h"
@@ -31,7 +33,30 @@ class SkyGuide;
 struct PathGuideCell {
     Frame frame;
     float share = 0;                ///< share of the samples that follow the guide
+    float spot_share = 0;           ///< of these, the share that goes to spots
     DirectionHistogram directions;  ///< relative to the cosine's density
+};
+
+/// The guide of a place: the directions of its cell, and the spots as the place sees them.
+class PathGuideMixture {
+  public:
+    /// Makes one that leads nowhere.
+    PathGuideMixture() = default;
+    PathGuideMixture(const PathGuideCell& cell, const BrightSpots::View& spots)
+        : cell_(&cell), spots_(spots) {
+        if (!spots.is_empty()) spot_share_ = cell.spot_share;
+    }
+    /// Share of the samples that follow the guide.
+    float share() const { return cell_ ? cell_->share : 0; }
+    /// A direction, of a choice and a place in [0, 1); not of one that leads nowhere.
+    Vec3 sample(float choice, Vec2 u) const;
+    /// Density of `sample`, per solid angle.
+    float pdf(Vec3 w) const;
+
+  private:
+    const PathGuideCell* cell_ = nullptr;
+    BrightSpots::View spots_;
+    float spot_share_ = 0;
 };
 
 class PathGuide {
@@ -44,15 +69,14 @@ class PathGuide {
               const LampGuide& lamps);
 
     bool is_empty() const { return cells_.empty(); }
-    /// The directions that light comes from at a place; null where the BSDF is to choose alone.
-    const PathGuideCell* at(const PlaceTree::Place& place) const {
-        if (is_empty()) return nullptr;
+    /// The guide of a place; one that leads nowhere where the BSDF is to choose alone.
+    PathGuideMixture at(const PlaceTree::Place& place) const {
+        if (is_empty()) return {};
         const PathGuideCell& cell = cells_[tree_.leaf(place.position, place.normal)];
-        return cell.share > 0 ? &cell : nullptr;
+        if (!(cell.share > 0)) return {};
+        return {cell, cell.spot_share > 0 ? spots_.seen_from(place.position, place.normal)
+                                          : BrightSpots::View()};
     }
-    Vec3 sample(const PathGuideCell& cell, Vec2 u) const;
-    /// Density of `sample`, per solid angle.
-    float pdf(const PathGuideCell& cell, Vec3 w) const;
     const GuideOutcome& outcome() const { return outcome_; }
 
     /// Learns from what paths tell; returns the share of the noise that is left, as far as those
@@ -62,6 +86,7 @@ class PathGuide {
   private:
     PlaceTree tree_;
     std::vector<PathGuideCell> cells_;
+    BrightSpots spots_;
     GuideOutcome outcome_;
 };
 
