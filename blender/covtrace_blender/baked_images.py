@@ -40,7 +40,7 @@ class BakedImages:
     def turned(self, image, body, uv_map, strengths):
         """The BakedImage that body_normals.turned makes, or an earlier one."""
         key = (image.name_full, body.key(body_normals.kinds(uv_map)), uv_map, strengths)
-        found = self._used.get(key) or _known.get(key) or Baked(image=body_normals.turned(image, body, uv_map, strengths))
+        found = self._used.get(key) or _known.get(key) or Baked(images=[body_normals.turned(image, body, uv_map, strengths)])
         self._used[key] = found
         return found.image
 
@@ -53,7 +53,7 @@ class BakedImages:
         for key, baked in self._used.items():
             if key in self._of_changing:
                 continue
-            size += baked.image.bytes if baked.image else 0
+            size += sum(image.bytes for image in baked.images)
             if size <= MOST_BYTES:
                 _known[key] = baked
 

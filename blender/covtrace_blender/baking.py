@@ -5,10 +5,11 @@ import itertools
 import numpy as np
 
 from . import edges
-from .baked import Baked, BakedImage, Layout
+from .angles import GRID, of_constants, of_places
+from .baked import Baked, Layout, channels_of, images_of
 from .body_baking import bake_body
 from .parts import PART, by_parts
-from .shader_nodes.evaluator import evaluated
+from .shader_nodes.evaluator import evaluated, evaluated_at
 from .shader_nodes.place import RANDOMS, STRANDS, UvPlace
 
 SMALLEST, LARGEST = 512, 2048  # pixels along a side
@@ -54,44 +55,50 @@ class Baker:
     def __init__(self, pixels_of):
         self.pixels_of, self.ray, self.owner = pixels_of, None, None
 
-    def bake(self, get, surface, only_unit_square=False):
-        """Bakes `get(evaluator)`, a number or a vector; only_unit_square: for what has no other layout.
+    def bake(self, get, surface, only_unit_square=False, by_angle=True):
+        """Bakes `get(evaluator)`, a number or a vector; only_unit_square: for what has no other layout; by_angle: whether it may hang on the
+        angle of sight, of which it else is the mean.
 
         Raises Unsupported of the node that cannot be evaluated.
         """
         if surface.body:
-            return bake_body(get, surface.body, self.pixels_of, self.ray, self.owner)
+            return bake_body(get, surface.body, self.pixels_of, self.ray, self.owner, by_angle)
 
-        def at(uv):
-            return evaluated(get, UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray, self.owner))
+        def place_of(uv):
+            return UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray, self.owner)
 
         random = np.random.default_rng(0)
-        place = UvPlace(random.random((PROBES, 2)).astype(np.float32), self.pixels_of, self.ray, self.owner)
+        place = place_of(random.random((PROBES, 2)))
         value = evaluated(get, place)
+        channels, is_by_angle = channels_of(value), by_angle and place.hangs_on_angle
+        is_mean = place.hangs_on_angle and not by_angle
         if place.is_uniform:
-            return Baked(constant=value, is_mean=place.hangs_on_angle)
-        shape = value.shape if len(value.shape) and value.shape[0] == PROBES else (PROBES, *value.shape)
-
-        def values_at(uv):
-            return np.broadcast_to(at(uv), (len(uv), *shape[1:]))
-
+            if is_by_angle:
+                return of_constants(get, place_of(np.zeros((len(GRID), 2))), channels)
+            return Baked(constant=value, is_mean=is_mean)
         low, high = surface.range(place.uv_maps[0])
         probes = low + random.random((PROBES, 2)) * np.maximum(high - low, 1e-3)
+        angles = of_places(get, place_of(probes.repeat(len(GRID), axis=0)), channels) if is_by_angle else None
+
+        def values_at(uv):
+            if angles:
+                return evaluated_at(get, place_of(uv), angles.cosines, len(uv), channels)
+            return np.broadcast_to(np.reshape(evaluated(get, place_of(uv)), (-1, channels)), (len(uv), channels))
+
         period = next((n for n in (1, 2) if _repeats(values_at, probes, n)), None)
         layout = _layout(low, high, period)
         is_cut = only_unit_square and period != 1 and (low.min() < -1e-4 or high.max() > 1 + 1e-4)
         if only_unit_square:
             layout = Layout((0, 0), (1, 1), "repeat")
-        size = _size(values_at, layout, place.images, random)
-        pixels = self._pixels(values_at, layout, size, len(shape) > 1)
-        return Baked(image=BakedImage(pixels), layout=layout, uv_maps=place.uv_maps, is_cut=is_cut,
-                     is_mean=place.hangs_on_angle)
+        count = len(angles.cosines) if angles else 1
+        size = _size(values_at, layout, place.images, random, count > 2)
+        pixels = self._pixels(values_at, layout, size, count * channels)
+        return Baked(images=images_of(pixels, channels), layout=layout, uv_maps=place.uv_maps, is_cut=is_cut, is_mean=is_mean, angles=angles)
 
     @staticmethod
-    def _pixels(values_at, layout, size, is_colour):
-        """(h, w, 1 or 3) float32 from the top."""
+    def _pixels(values_at, layout, size, channels):
+        """(h, w, channels) float32 from the top."""
         width, height = size
-        channels = 3 if is_colour else 1
         texel = layout.extent / size
 
         def mean_at(columns, rows, places):
@@ -130,13 +137,15 @@ def _layout(low, high, period):
     return Layout(low, np.maximum(high - low, 1e-6), "clamp")
 
 
-def _size(values_at, layout, images, random):
-    """(width, height): whole multiples of the largest image's, and as fine as the nodes need."""
+def _size(values_at, layout, images, random, are_many):
+    """(width, height): whole multiples of the largest image's, and as fine as the nodes need. are_many: whether they share the memory of
+    one or two."""
+    smallest, largest = (SMALLEST // 2, LARGEST // 2) if are_many else (SMALLEST, LARGEST)
     sizes = []
     for axis in (0, 1):
-        base = max([image.size[axis] for image in images if 0 < image.size[axis] <= LARGEST], default=SMALLEST)
-        size = base * -(-SMALLEST // base)
-        sizes.append([size * 2**k for k in range(3) if size * 2**k <= LARGEST] or [LARGEST])
+        base = max([image.size[axis] for image in images if 0 < image.size[axis] <= largest], default=smallest)
+        size = base * -(-smallest // base)
+        sizes.append([size * 2**k for k in range(3) if size * 2**k <= largest] or [largest])
     steps = max(len(s) for s in sizes)
     uv = layout.low + random.random((4 * PROBES, 2)) * layout.extent
     exact = values_at(uv)
@@ -156,5 +165,5 @@ def _interpolated(values_at, layout, size, uv):
     for corner in itertools.product((0, 1), repeat=2):
         weight = np.prod(np.where(corner, share, 1 - share), axis=1)
         value = values_at(layout.low + (first + corner + 0.5) / size * layout.extent)
-        total = total + (weight if value.ndim == 1 else weight[:, None]) * value
+        total = total + weight[:, None] * value
     return total

@@ -3,36 +3,43 @@
 import numpy as np
 
 from . import edges
-from .baked import Baked, BakedImage, Layout
+from .angles import GRID, of_constants, of_places
+from .baked import Baked, BakedImage, Layout, channels_of
 from .parts import by_parts
-from .shader_nodes.evaluator import evaluated
+from .shader_nodes.evaluator import evaluated, evaluated_at
 from .shader_nodes.place import BodyPlace
 
 PROBES = 256
 
 
-def bake_body(get, body, pixels_of, ray, owner):
-    """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`. The rest as BodyPlace has it."""
-    def at(texels, shift=(0.0, 0.0)):
-        place = BodyPlace(body, texels, shift, pixels_of, ray, owner)
-        found = evaluated(get, place)
-        kinds.update(place.kinds())
-        means.append(place.hangs_on_angle)
-        return found
+def bake_body(get, body, pixels_of, ray, owner, by_angle=True):
+    """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`. by_angle: as Baker has it; the rest as BodyPlace has it."""
+    def place_of(chosen, shift=(0.0, 0.0)):
+        return BodyPlace(body, chosen, shift, pixels_of, ray, owner)
 
-    kinds, means = set(), []
     texels = body.atlas.texels
     count = len(texels.triangle)
-    probe = at(np.random.default_rng(0).integers(0, max(count, 1), PROBES if count else 0))
-    if not kinds or not count or probe.shape in ((), (3,)):
-        return Baked(constant=probe if count else np.zeros(probe.shape[1:]), kinds=kinds, is_mean=any(means))
-    channels = 3 if probe.ndim == 2 else 1
+    probes = np.random.default_rng(0).integers(0, max(count, 1), PROBES if count else 0)
+    place = place_of(probes)
+    probe = evaluated(get, place)
+    kinds, channels, is_by_angle = place.kinds(), channels_of(probe), by_angle and place.hangs_on_angle
+    is_mean = place.hangs_on_angle and not by_angle
+    if not count:
+        return Baked(constant=np.zeros(probe.shape[1:]), kinds=kinds, is_mean=is_mean)
+    if is_by_angle and not kinds:
+        return of_constants(get, place_of(probes[:1].repeat(len(GRID))), channels)
+    if not kinds or not is_by_angle and probe.shape in ((), (3,)):
+        return Baked(constant=probe, kinds=kinds, is_mean=is_mean)
+    angles = of_places(get, place_of(probes.repeat(len(GRID))), channels) if is_by_angle else None
+    width = channels * (len(angles.cosines) if angles else 1)
 
     def values_at(chosen, shift):
-        return np.broadcast_to(at(chosen, shift).reshape(-1, channels), (len(chosen), channels))
+        if angles:
+            return evaluated_at(get, place_of(chosen, shift), angles.cosines, len(chosen), channels)
+        return np.broadcast_to(np.reshape(evaluated(get, place_of(chosen, shift)), (-1, channels)), (len(chosen), channels))
 
     def mean_at(chosen, places):
-        found = np.empty((len(chosen), channels), np.float32)
+        found = np.empty((len(chosen), width), np.float32)
 
         def work(first, end):
             found[first:end] = sum(values_at(chosen[first:end], shift) for shift in places) / len(places)
@@ -44,7 +51,9 @@ def bake_body(get, body, pixels_of, ray, owner):
     chart = scattered(body.atlas, body.atlas.chart[texels.triangle, None] + 1)[..., 0]
     number = scattered(body.atlas, np.arange(count)[:, None])[..., 0]
     edges.add_means(image, lambda rows, columns, places: mean_at(number[rows, columns], places), chart, chart > 0)
-    return Baked(image=body_image(body.atlas, image[texels.rows, texels.columns]), layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds, is_mean=any(means))
+    values = image[texels.rows, texels.columns]
+    images = [body_image(body.atlas, values[:, first:first + channels]) for first in range(0, width, channels)]
+    return Baked(images=images, layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds, is_mean=is_mean, angles=angles)
 
 
 def scattered(atlas, values):

@@ -5,9 +5,10 @@ import io
 import numpy as np
 
 from . import body_normals
+from .angles import GRID, of_constants, of_places
 from .atlas import MARGIN
 from .atlases import digest
-from .baked import Baked, BakedImage, Layout
+from .baked import Baked, BakedImage, Layout, channels_of
 from .baking import Surface
 from .charts import WAYS
 from .export_materials import MaterialExporter
@@ -30,7 +31,7 @@ class _AnyBody:
 
     @staticmethod
     def values(kind, texels, shift):
-        return np.random.default_rng(len(kind)).random((len(texels), 3), np.float32)
+        return np.random.default_rng(len(kind)).random((PROBES, 3), np.float32)[texels]
 
 
 class _Counter:
@@ -41,7 +42,7 @@ class _Counter:
         self._pixels_of, self.ray, self.owner, self._known, self.kinds = pixels_of, None, None, {}, set()
 
     def images(self):
-        return sum(found.image is not None for found in self._known.values())
+        return sum(len(found.images) for found in self._known.values())
 
     def of(self, socket, surface, how, bake):
         return self._once((socket.node.path, socket.identifier, how), bake)
@@ -50,16 +51,24 @@ class _Counter:
         self.kinds.update(body_normals.kinds(uv_map))
         return self._once((image.name_full, uv_map, strengths), self._image).image
 
-    def bake(self, get, surface, only_unit_square=False):
-        place = BodyPlace(_AnyBody, np.arange(PROBES), (0.0, 0.0), self._pixels_of, self.ray, self.owner) if surface.body else \
-            UvPlace(np.random.default_rng(0).random((PROBES, 2), np.float32), self._pixels_of, self.ray, self.owner)
+    def bake(self, get, surface, only_unit_square=False, by_angle=True):
+        def place_of(times):
+            if surface.body:
+                return BodyPlace(_AnyBody, np.arange(PROBES).repeat(times), (0.0, 0.0), self._pixels_of, self.ray, self.owner)
+            return UvPlace(_AnyBody.values("uv", np.arange(PROBES).repeat(times), None)[:, :2], self._pixels_of, self.ray, self.owner)
+
+        place = place_of(1)
         value = evaluated(get, place)
+        angles = None
+        if place.hangs_on_angle and by_angle:
+            if place.is_uniform:
+                return of_constants(get, UvPlace(np.zeros((len(GRID), 2), np.float32), self._pixels_of, self.ray, self.owner), channels_of(value))
+            angles = of_places(get, place_of(len(GRID)), channels_of(value))
         if place.is_uniform:
             return Baked(constant=value)
         if surface.body:
             self.kinds.update(place.kinds())
-            return self._image()
-        return self._image(place.uv_maps)
+        return self._image(() if surface.body else place.uv_maps, angles)
 
     def _once(self, key, make):
         if key not in self._known:
@@ -67,8 +76,9 @@ class _Counter:
         return self._known[key]
 
     @staticmethod
-    def _image(uv_maps=()):
-        return Baked(image=BakedImage(np.zeros((1, 1, 3), np.float32)), layout=Layout((0, 0), (1, 1), "repeat"), uv_maps=uv_maps)
+    def _image(uv_maps=(), angles=None):
+        images = [BakedImage(np.zeros((1, 1, 3), np.float32)) for _ in (angles.cosines if angles else (1,))]
+        return Baked(images=images, layout=Layout((0, 0), (1, 1), "repeat"), uv_maps=uv_maps, angles=angles)
 
 
 class _NoFiles:

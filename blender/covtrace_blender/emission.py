@@ -2,16 +2,25 @@
 
 import numpy as np
 
-from .export_sockets import Value
+from .export_shaders import numbers
 from .opacity import OpacityReader
 from .shader_nodes.unsupported import Unsupported
+from .values import Value
 
 
 class Emission:
-    """The light of an area light: its radiance, or the file of an image with the radiance of white."""
+    """The light of an area light: its radiance, or that of white in an image, by the image's file, or in a texture, by its name."""
 
-    def __init__(self, radiance, texture=None):
-        self.radiance, self.texture = radiance, texture
+    def __init__(self, radiance, file=None, texture=None):
+        self.radiance, self.file, self.texture = radiance, file, texture
+
+    def parameters(self):
+        """pbrt's."""
+        if self.texture:
+            return f'"texture L" "{self.texture}" "float scale" {self.radiance[0]:.9g}'
+        if self.file:
+            return f'"string filename" "{self.file}" "float scale" {self.radiance[0]:.9g}'
+        return f'"rgb L" [{numbers(self.radiance)}]'
 
 
 class Light:
@@ -43,9 +52,9 @@ class EmissionReader(OpacityReader):
         strengths = [self._value(light.strength, True) for light in lights]
         parts = list(zip(lights, colours, strengths))
         if all(light.share is not None for light in lights):
-            if not any(value.image for value in (*colours, *strengths)):
+            if not any(value.varies for value in (*colours, *strengths)):
                 return self._shining(Value(tuple(sum(c.constant[k] * s.constant * light.share for light, c, s in parts) for k in range(3))))
-            if len(lights) == 1 and not strengths[0].image:
+            if len(lights) == 1 and not strengths[0].varies:
                 return self._shining(colours[0], strengths[0].constant * lights[0].share)
         try:
             return self._shining(self._baked_function(lambda nodes: self._light_at(nodes, parts), node.outputs[0], ("emission",), True))
@@ -87,9 +96,9 @@ class EmissionReader(OpacityReader):
         second = self._share_of_opaque(node, self._mix_share(node), *opacities)
         found = []
         for part, opacity, is_second in zip(parts, opacities, (False, True)):
-            if not opacity.image and opacity.constant <= 0:
+            if not opacity.varies and opacity.constant <= 0:
                 continue
-            own = None if second.image else second.constant if is_second else 1 - second.constant
+            own = None if second.varies else second.constant if is_second else 1 - second.constant
             if own != 0:
                 found += self._lights(part, None if own is None or share is None else own * share, (*steps, (node, is_second)))
         return found
@@ -97,7 +106,7 @@ class EmissionReader(OpacityReader):
     def _light(self, node, share, steps):
         """The Light of a shader's node."""
         sockets, opacity = self._light_sockets(node), self._opacity(node) if self.in_full else Value(1.0)
-        if opacity.image:
+        if opacity.varies:
             return Light(*sockets, None, steps, node.inputs["Alpha"])
         return Light(*sockets, None if share is None else share * opacity.constant, steps)
 
@@ -105,20 +114,22 @@ class EmissionReader(OpacityReader):
         """The sum of [(Light, colour, strength)] at the places of an Evaluator: (3,) or (n, 3)."""
         total = np.zeros(3, np.float32)
         for light, colour, strength in lights:
-            weight = nodes.number(light.strength) if strength.image else strength.constant
+            weight = nodes.number(light.strength) if strength.varies else strength.constant
             for mix, is_second in light.steps:
                 share = self._share_at(nodes, mix) if self.in_full else self._opaque_share_at(nodes, mix)
                 weight = weight * (share if is_second else 1 - share)
             if light.opacity:
                 weight = weight * np.clip(nodes.number(light.opacity), 0, 1)
-            total = total + np.asarray(weight)[..., None] * (nodes.vector(light.colour) if colour.image else np.array(colour.constant))
+            total = total + np.asarray(weight)[..., None] * (nodes.vector(light.colour) if colour.varies else np.array(colour.constant))
         return total.astype(np.float32)
 
     def _shining(self, colour, strength=1.0):
         """The Emission of a colour's Value `strength` times; None where nothing shines."""
-        if not colour.image:
+        if not colour.varies:
             radiance = tuple(c * strength for c in colour.constant)
             return Emission(radiance) if max(radiance) > 0 else None
         if not colour.is_plainly_placed():
             self.warn(f"material '{self.name}': an image that shines is used as it lies, unscaled and interpolated")
-        return Emission((strength,) * 3, self.files.write_emission(colour.image, colour.key(), colour.apply))
+        if colour.image:
+            return Emission((strength,) * 3, self.files.write_emission(colour.image, colour.key(), colour.apply))
+        return Emission((strength,) * 3, texture=self._texture("spectrum", colour, most=np.inf, shines=True))

@@ -12,17 +12,17 @@ from .baking import Baker, Surface
 from .displacement import method_of
 from .emission import either
 from .export_shaders import squared, stretch_of_glossy, stretch_of_layers
-from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import medium_of
 from .media import Media
 from .node_signature import all_nodes, tree_of
 from .owner import Owner, asked_of_owner
-from .shader_nodes import surroundings
+from .shader_nodes import sight, surroundings
 from .shader_nodes.flat import flat_output
 from .shader_nodes.light_path import RAYS, groups_of_rays
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .sums import SumExporter
+from .values import Value
 
 TRANSPARENT = '"float alpha" 0'
 WITHOUT_MATERIAL = types.SimpleNamespace(name="", name_full="", pass_index=0)  # stands for the one of a volume object that has none
@@ -111,6 +111,8 @@ class MaterialExporter(SumExporter):
         nodes = list(all_nodes(material.node_tree))
         if any(node.type == "NEW_GEOMETRY" and node.outputs["Backfacing"].is_linked for node in nodes):
             self.warn(f"material '{self.name}': surfaces look from behind as from their front; Backfacing is 0")
+        if any(node.type in sight.NODES and node.inputs["Normal"].is_linked and any(output.is_linked for output in node.outputs) for node in nodes):
+            self.warn(f"material '{self.name}': what hangs on the angle of sight does so by the smooth normal, not by that of bumps or maps")
         for kind, text in surroundings.TOLD.items():
             if any(node.type == kind and any(output.is_linked for output in node.outputs) for node in nodes):
                 self.warn(f"material '{self.name}': {text}")
@@ -193,7 +195,7 @@ class MaterialExporter(SumExporter):
     def _tell_of_tint(self, node):
         """Warns where a Transparent colours what passes: an interface has no colour."""
         tint = self._value(node.inputs["Color"])
-        if tint.image or max(abs(c - 1) for c in tint.constant) > 0.01:
+        if tint.varies or max(abs(c - 1) for c in tint.constant) > 0.01:
             self.warn(f"material '{self.name}': the colour of '{node.name}' around a volume is not supported and left out")
 
     def _medium(self, node):
@@ -304,7 +306,7 @@ class MaterialExporter(SumExporter):
         if node.parametrization == "MELANIN":
             absorption = hair_pigment.absorption_of_pigments(self._plain(get["Melanin"]), self._plain(get["Melanin Redness"]))
             tint = self._value(get["Tint"])
-            if tint.image:
+            if tint.varies:
                 self.warn(f"material '{self.name}': an image at 'Tint' of '{node.name}' is not supported and left out")
             else:
                 radial = self._plain(get["Roughness" if is_huang else "Radial Roughness"])
@@ -320,35 +322,35 @@ class MaterialExporter(SumExporter):
 
     def _mix_shader(self, node):
         first, second = self._parts(node)
-        angular = self._angular_share(node.inputs[0])
-        if angular:
-            whole = self._angular_mix(first, second, *angular)
-            if whole:
-                return whole
+        whole = self._under_border(node, first, second)
+        if whole:
+            return whole
         amount = self._mix_share(node)
-        if not amount.image and not 0 < amount.constant < 1:
+        if not amount.varies and not 0 < amount.constant < 1:
             return self._input_shader(node.inputs[2 if amount.constant >= 1 else 1])
         opacities = [self._opacity(shader) for shader in (first, second)]
         for opacity, other in zip(opacities, (2, 1)):
-            if not opacity.image and opacity.constant == 0:
+            if not opacity.varies and opacity.constant == 0:
                 return self._input_shader(node.inputs[other])
         return self._mix(self._input_shader(node.inputs[1]), self._input_shader(node.inputs[2]),
                          self._share_of_opaque(node, amount, *opacities))
 
-    def _angular_mix(self, first, second, eta, share):
-        """Mixture of two shaders by the angle of sight."""
+    def _under_border(self, node, first, second):
+        """A mixture of two shaders by the reflectance of a border that is one surface; None of others."""
         kinds = (first.type if first else None, second.type if second else None)
-        if eta and kinds in (("BSDF_DIFFUSE", "BSDF_GLOSSY"), ("BSDF_REFRACTION", "BSDF_GLOSSY")):
-            tint = self._value(second.inputs["Color"])
-            if tint.image or min(tint.constant) < 0.99:
-                self.warn(f"material '{self.name}': the colour of '{second.name}' over a border is not supported and left out")
-            if kinds[0] == "BSDF_REFRACTION":
-                return self._clear(self._value(first.inputs["Color"]), self._rough(first), eta, self._normal_map(first))
-            return self._make("coateddiffuse", [
-                self._colour("reflectance", self._value(first.inputs["Color"])), *self._roughness(self._rough(second)),
-                f'"float eta" {eta:.9g}', '"bool reflectsthroughcoat" true', *self._normal_map(first)])
-        self.warn(f"material '{self.name}': a mixture by the angle of sight has the same share, {share:.3g}, at all angles")
-        return None
+        if kinds not in (("BSDF_DIFFUSE", "BSDF_GLOSSY"), ("BSDF_REFRACTION", "BSDF_GLOSSY")):
+            return None
+        eta = self._border_of(node.inputs[0])
+        if not eta:
+            return None
+        tint = self._value(second.inputs["Color"])
+        if tint.varies or min(tint.constant) < 0.99:
+            self.warn(f"material '{self.name}': the colour of '{second.name}' over a border is not supported and left out")
+        if kinds[0] == "BSDF_REFRACTION":
+            return self._clear(self._value(first.inputs["Color"]), self._rough(first), eta, self._normal_map(first))
+        return self._make("coateddiffuse", [
+            self._colour("reflectance", self._value(first.inputs["Color"])), *self._roughness(self._rough(second)),
+            f'"float eta" {eta:.9g}', '"bool reflectsthroughcoat" true', *self._normal_map(first)])
 
     def _add_shader(self, node):
         """The surface of a sum of at most one with light."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from .emission import either
 from .export_shaders import squared, stretch_of_layers
-from .export_sockets import Value
 from .export_subsurface import SubsurfaceExporter
+from .values import Value
 
 
 def eta_of_reflectance(reflectance):
@@ -26,7 +26,7 @@ WHITE = Value((1.0, 1.0, 1.0))
 
 
 def is_white(value):
-    return not value.image and min(value.constant) >= 1
+    return not value.varies and min(value.constant) >= 1
 
 
 # Features of Principled that are left out: names of the socket, and the value at which it changes
@@ -68,13 +68,12 @@ class PrincipledExporter(SubsurfaceExporter):
         if "Sheen Weight" not in inputs or not (weight := self._plain(inputs["Sheen Weight"])) > 0:
             return []
         tint = self._value(inputs["Sheen Tint"])
-        colour = tint.times(weight) if tint.image else Value(tuple(weight * c for c in tint.constant))
-        return [self._colour("sheen", colour),
+        return [self._colour("sheen", tint.times(weight)),
                 self._number("sheenroughness", self._value(inputs["Sheen Roughness"], True), squared, "squared")]
 
     def _coat(self, inputs, weight):
         """Parameters of the clear coat over all but the fibres; weight: a Value."""
-        if not weight.image and weight.constant <= 0:
+        if not weight.varies and weight.constant <= 0:
             return []
         if "Clearcoat" in inputs:
             # Before Blender 4.0 a full coat reflects a quarter of what it reflects since.
@@ -111,7 +110,7 @@ class PrincipledExporter(SubsurfaceExporter):
 
         get = node.inputs
         weight = self._value(either(get, "Subsurface Weight", "Subsurface"), True)
-        if not weight.image and weight.constant <= 0:
+        if not weight.varies and weight.constant <= 0:
             return diffuse()
         if layers:
             self.warn(f"material '{self.name}': Principled's coat and sheen are left out where light is scattered below the surface")
@@ -125,11 +124,11 @@ class PrincipledExporter(SubsurfaceExporter):
             weight = Value(1.0)
         body = self._body(node, node.subsurface_method, colour, get["Subsurface Radius"], scale,
                           eta_of_reflectance(self._reflectance(get)), [*border, *turned])
-        return body if not weight.image and weight.constant >= 1 else self._mix(diffuse(), body, weight)
+        return body if not weight.varies and weight.constant >= 1 else self._mix(diffuse(), body, weight)
 
     def _mixed_colours(self, first, second, share):
         """Share `share` of the second Value of colour; of images one alone, the one of which there is more."""
-        if first.image or second.image:
+        if first.varies or second.varies:
             if 0 < share < 1:
                 self.warn(f"material '{self.name}': Principled's Base Color and Subsurface Color are not mixed where one is an image")
             return second if share >= 0.5 else first
@@ -138,7 +137,7 @@ class PrincipledExporter(SubsurfaceExporter):
     def _is_mixed_with_uncoated(self, inputs, weight):
         """Whether a part of the surface has no coat, as in Cycles from 5.3 on; before that all of it has one that is weaker. Without a tint
         both are the same."""
-        return bpy.app.version >= (5, 3, 0) and (weight.image or 0 < weight.constant < 1) and not is_white(self._value(inputs["Coat Tint"]))
+        return bpy.app.version >= (5, 3, 0) and (weight.varies or 0 < weight.constant < 1) and not is_white(self._value(inputs["Coat Tint"]))
 
     def _principled(self, node):
         self._tell_left_out(node.inputs)
@@ -158,7 +157,7 @@ class PrincipledExporter(SubsurfaceExporter):
         stretch = self._stretch(node, "Anisotropic", "Anisotropic Rotation", stretch_of_layers)
 
         def is_constant(value, number):
-            return not value.image and value.constant == number
+            return not value.varies and value.constant == number
 
         def glass():
             if not is_white(self._specular_tint(get)):

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 
-from .export_sockets import SocketReader, Value
+from .angles import MOST_IMAGES
+from .export_sockets import SocketReader
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .tangents import Tangent
+from .values import Between, ByAngle
 
 
 def numbers(values):
@@ -36,41 +38,67 @@ class ShaderWriter(SocketReader):
 
     tangent, heights = None, None
 
-    def _texture(self, kind, value, treat=lambda v: v, key=""):
-        """Declares a texture of an image and returns its name."""
-        file = self.files.write(value.image, (value.key(), kind, key),
-                                lambda pixels: treat(value.apply(pixels)))
-        return self._declare(kind, value, file)
+    def _texture(self, kind, value, treat=lambda v: v, key="", most=1.0, shines=False):
+        """Declares a texture of a Value and returns its name. treat: what makes of its values, which are clipped to [0, most], those of the
+        texture; key: tells that from others, "" being none. shines: whether images may be brighter than 1."""
+        rest = treat, key, most, shines
+        if isinstance(value, ByAngle):
+            return self._facing(kind, value.cosines, [self._texture(kind, part, *rest) for part in value.parts])
+        if isinstance(value, Between) and key:
+            # The treated values are no longer linear in the share.
+            few = value.share.resampled(MOST_IMAGES)
+            return self._facing(kind, few.cosines, [self._texture_between(kind, value, part.constant, treat, key) for part in few.parts])
+        if isinstance(value, Between):
+            first, second = (self._texture(kind, part, *rest) for part in (value.first, value.second))
+            share = self._texture("float", value.share)
+            return self._named_texture(kind, "mix", f'"texture tex1" "{first}" "texture tex2" "{second}" "texture amount" "{share}"')
+        if not value.varies:
+            constant = treat(np.clip(np.array(value.constant, dtype=float), 0, most))
+            return self._named_texture(kind, "constant", f'"{"float" if kind == "float" else "rgb"} value" [{numbers(np.ravel(constant))}]')
+        if shines:
+            return self._declare(kind, value, self.files.write_emission(value.image, value.key(), value.apply), encoding="sRGB")
+        return self._declare(kind, value, self.files.write(value.image, (value.key(), kind, key), lambda pixels: treat(value.apply(pixels))))
 
-    def _declare(self, kind, value, file, scale=1.0):
-        """Declares the texture of an image that lies in a file, `scale` times."""
+    def _texture_between(self, kind, value, share, treat, key):
+        """Declares the texture of a Between where this is the share of its second image."""
+        def mixed(pixels):
+            second = value.second.apply(self.files.source(value.second.image))
+            return treat((1 - share) * value.first.apply(pixels) + share * second)
+
+        return self._declare(kind, value.first, self.files.write(value.first.image, (value.key(), kind, key, share), mixed))
+
+    def _facing(self, kind, cosines, names):
+        """Declares the texture that has these textures at cosines of the angle of sight."""
+        quoted = " ".join(f'"{name}"' for name in names)
+        return self._named_texture(kind, "facing", f'"string textures" [{quoted}] "float cosines" [{numbers(cosines)}]')
+
+    def _named_texture(self, kind, model, parameters):
         name = f"texture {self.count}"
         self.count += 1
-        su, sv, du, dv = value.mapping
-        self.out.write(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{file}" '
-                       f'"string encoding" "linear" "float uscale" {su:.9g} "float vscale" {sv:.9g} '
-                       f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}" '
-                       f'"string wrap" "{value.wrap}" "float scale" {scale:.9g}\n')
+        self.out.write(f'Texture "{name}" "{kind}" "{model}" {parameters}\n')
         return name
 
+    def _declare(self, kind, value, file, scale=1.0, encoding="linear"):
+        """Declares the texture of an image that lies in a file, `scale` times."""
+        su, sv, du, dv = value.mapping
+        return self._named_texture(kind, "imagemap", (
+            f'"string filename" "{file}" "string encoding" "{encoding}" "float uscale" {su:.9g} "float vscale" {sv:.9g} '
+            f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}" '
+            f'"string wrap" "{value.wrap}" "float scale" {scale:.9g}'))
+
     def _colour(self, parameter, value, treat=lambda v: v, key=""):
-        if value.image:
+        if value.varies:
             return f'"texture {parameter}" "{self._texture("spectrum", value, treat, key)}"'
         rgb = treat(np.clip(np.array(value.constant, dtype=float), 0, 1))
         return f'"rgb {parameter}" [{numbers(rgb)}]'
 
     def _index(self, parameter, value):
         """Numbers of any size per channel, as textures, which are taken as they are; colours would become spectra."""
-        if value.image:
-            return self._colour(parameter, value)
-        name = f"texture {self.count}"
-        self.count += 1
-        self.out.write(f'Texture "{name}" "spectrum" "constant" "rgb value" [{numbers(np.maximum(value.constant, 0))}]\n')
-        return f'"texture {parameter}" "{name}"'
+        return f'"texture {parameter}" "{self._texture("spectrum", value, most=np.inf)}"'
 
     def _number(self, parameter, value, treat=lambda v: v, key=""):
-        if value.image:
-            return f'"texture {parameter}" "{self._texture("float", value, treat, key)}"'
+        if value.varies:
+            return f'"texture {parameter}" "{self._texture("float", value, treat, key, np.inf)}"'
         return f'"float {parameter}" {float(treat(np.array(value.constant))):.9g}'
 
     def _film(self, inputs):
@@ -89,7 +117,7 @@ class ShaderWriter(SocketReader):
 
     def _mix(self, first, second, amount):
         """Share `amount` of the second one."""
-        if not amount.image:
+        if not amount.varies:
             share = min(max(float(amount.constant), 0.0), 1.0)
             if share == 0:
                 return first
@@ -141,17 +169,17 @@ class ShaderWriter(SocketReader):
         if source.type == "BUMP":
             return self._bump(source)
         if source.type == "NORMAL_MAP" and source.space == "TANGENT":
-            value = self._value(source.inputs["Color"], only_unit_square=True)
+            value = self._value(source.inputs["Color"], only_unit_square=True, by_angle=False)
             strength = self._plain(source.inputs["Strength"])
             # Maps by the convention of DirectX, which Blender knows since 5.1, have y downwards.
             strengths = (strength, -strength if getattr(source, "convention", "") == "DIRECTX" else strength, strength)
             if source.uv_map and source.uv_map not in self.uv_maps:
                 self.uv_maps.append(source.uv_map)
-            if value.image and not self.surface.body and not value.is_plainly_placed():
+            if value.varies and not self.surface.body and not value.is_plainly_placed():
                 self._ask_for_body(NeedsBody(source, "a normal map lies on the unit square alone"))
-            if value.image and self.surface.body:
+            if value.varies and self.surface.body:
                 return self._normals_on_body(value.image, ("UV", source.uv_map), strengths)
-            if value.image:
+            if value.varies:
                 def scaled(colour):
                     # Cycles blends from the flat normal.
                     flat = np.array([0.5, 0.5, 1.0], dtype=np.float32)
@@ -193,16 +221,16 @@ class ShaderWriter(SocketReader):
         scale = parts[0][1] if len(parts) == 1 else 1.0
         try:
             if len(parts) == 1:
-                height = self._baked_value(parts[0][0], is_number=True)
+                height = self._baked_value(parts[0][0], is_number=True, by_angle=False)
             else:
                 height = self._baked_function(lambda nodes: sum(factor * nodes.number(socket) for socket, factor in parts), output,
-                                              ("heights", *(factor for _, factor in parts)))
+                                              ("heights", *(factor for _, factor in parts)), by_angle=False)
         except Unsupported as problem:
             self._ask_for_body(problem)
             self.warn(f"material '{self.name}': node '{problem.node.name}' at 'Height' is not supported ({problem.reason}); "
                       "the surface is flat there")
             return []
-        if not height.image:
+        if not height.varies:
             return []
         name = self._declare("float", height, self.files.write_heights(height.image), scale)
         return [f'"texture displacement" "{name}"']

@@ -6,48 +6,9 @@ from . import tiled_images
 from .baking import Surface
 from .node_images import image_of
 from .shader_nodes.unsupported import NeedsBody, Unsupported
+from .values import PLAIN_MAPPING, Value
 from .working_space import luminance
 
-
-class Value:
-    """Value of a socket: a constant, or an image with a treatment."""
-
-    def __init__(self, constant=None, image=None, mapping=None, channel=None, scale=1.0, offset=0.0, filter="bilinear",
-                 wrap="repeat"):
-        self.constant, self.image, self.mapping, self.channel = constant, image, mapping, channel
-        self.scale, self.offset, self.filter, self.wrap = scale, offset, filter, wrap
-
-    def inverse(self, whole=1.0):
-        """whole - this."""
-        if not self.image and hasattr(self.constant, "__len__"):
-            return Value(tuple(whole - c for c in self.constant))
-        return self.times(-1, whole)
-
-    def times(self, factor, further=0.0):
-        """This number `factor` times, and a further one."""
-        if self.image:
-            return Value(image=self.image, mapping=self.mapping, channel=self.channel, scale=factor * self.scale,
-                         offset=factor * self.offset + further, filter=self.filter, wrap=self.wrap)
-        return Value(factor * self.constant + further)
-
-    def is_plainly_placed(self):
-        return self.mapping == PLAIN_MAPPING and self.filter == "bilinear" and self.wrap == "repeat"
-
-    def apply(self, pixels):
-        """(h, w, 3 or 4) to (h, w, 3), or to (h, w) where one number is wanted."""
-        if self.channel == "grey":
-            values = luminance(pixels[..., :3])
-        elif self.channel is not None:
-            values = pixels[..., "RGBA".index(self.channel)]
-        else:
-            values = pixels[..., :3]
-        return values * self.scale + self.offset
-
-    def key(self):
-        return (self.channel, self.scale, self.offset)
-
-
-PLAIN_MAPPING = (1, 1, 0, 0)
 
 # Blender's ways to go on beyond an image, in pbrt's words.
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black"}
@@ -65,10 +26,11 @@ class SocketReader:
         link = next(iter(socket.links), None)
         return (link.from_node, link.from_socket) if link else (None, None)
 
-    def _value(self, socket, grey=False, only_unit_square=False):
+    def _value(self, socket, grey=False, only_unit_square=False, by_angle=True):
         """Value of a socket; what is not understood becomes the socket's own constant, with a warning.
 
-        only_unit_square: for images that can have no other place.
+        only_unit_square: for images that can have no other place; by_angle: whether it may hang on the angle of sight, of which it else is
+        the mean, with a warning.
         """
         node, output = self._linked(socket)
         if node is None:
@@ -77,7 +39,7 @@ class SocketReader:
         if direct is not None:
             return direct
         try:
-            return self._baked_value(socket, grey, only_unit_square)
+            return self._baked_value(socket, grey, only_unit_square, by_angle)
         except Unsupported as problem:
             self._ask_for_body(problem)
             if node.type == "TEX_IMAGE" and node.image and not self.surface.body:
@@ -86,18 +48,18 @@ class SocketReader:
                       f"({problem.reason}); the socket's own value is used")
             return self._constant(socket.default_value, grey)
 
-    def _baked_value(self, socket, is_number, only_unit_square=False):
-        """Value of a number or a vector: a constant, or an image over UV. Raises Unsupported."""
+    def _baked_value(self, socket, is_number, only_unit_square=False, by_angle=True):
+        """Value of a number or a vector. The rest as _value has it. Raises Unsupported."""
         def get(nodes):
             return nodes.number(socket) if is_number else nodes.vector(socket)
 
-        return self._baked_function(get, socket, (is_number, only_unit_square), only_unit_square)
+        return self._baked_function(get, socket, (is_number, only_unit_square), only_unit_square, by_angle)
 
-    def _baked_function(self, get, socket, how, only_unit_square=False):
+    def _baked_function(self, get, socket, how, only_unit_square=False, by_angle=True):
         """Value of what a function of an Evaluator gives. It hangs on the tree of the socket, and is told from others of that socket by
         `how`. Raises Unsupported."""
-        how = (*how, self.baker.ray, self.baker.owner and self.baker.owner.key())
-        baked = self.baked.of(socket, self.surface, how, lambda: self.baker.bake(get, self.surface, only_unit_square))
+        how = (*how, by_angle, self.baker.ray, self.baker.owner and self.baker.owner.key())
+        baked = self.baked.of(socket, self.surface, how, lambda: self.baker.bake(get, self.surface, only_unit_square, by_angle))
         if baked.is_cut:
             self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")
         if baked.is_mean:
@@ -105,10 +67,7 @@ class SocketReader:
                       "over all angles")
         for name in baked.uv_maps:
             self._note_uv_map(name)
-        if baked.image is None:
-            value = np.asarray(baked.constant)
-            return Value(tuple(float(v) for v in value) if value.ndim else float(value))
-        return Value(image=baked.image, mapping=baked.layout.mapping(), wrap=baked.layout.wrap)
+        return baked.value()
 
     def _ask_for_body(self, problem):
         """Raises `problem` again where the surface has a body that solves it."""
@@ -122,8 +81,8 @@ class SocketReader:
 
     def _plain(self, socket):
         """A number where there can be no image; what is linked and no constant is told."""
-        value = self._value(socket, True)
-        if value.image:
+        value = self._value(socket, True, by_angle=False)
+        if value.varies:
             self.warn(f"material '{self.name}': an image at '{socket.name}' is not supported; the socket's own value is used")
             return float(socket.default_value)
         return float(value.constant)

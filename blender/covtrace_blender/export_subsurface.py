@@ -7,7 +7,7 @@ import numpy as np
 
 from .emission import EmissionReader, either
 from .export_shaders import squared
-from .export_sockets import Value
+from .values import Value
 
 
 def reflectance_of_dipole(albedo, far):
@@ -65,10 +65,10 @@ class SubsurfaceExporter(EmissionReader):
         eta = max(eta, 1.01)
         rough = Value(1.0) if is_skin(method) or "Roughness" not in get else self._value(get["Roughness"], True)
         # An image of it turns the directions in which light enters but little.
-        parameters = parameters + entry(method, eta, get["Roughness"].default_value if rough.image else rough.constant)
+        parameters = parameters + entry(method, eta, get["Roughness"].default_value if rough.varies else rough.constant)
         free_path = self._value(radius)
         if is_skin(method):
-            if free_path.image:
+            if free_path.varies:
                 self.warn(f"material '{self.name}': an image at '{radius.name}' is not supported; the socket's own value is used")
                 free_path = Value(tuple(radius.default_value)[:3])
             lengths = np.array(free_path.constant, dtype=float)
@@ -81,7 +81,7 @@ class SubsurfaceExporter(EmissionReader):
             mean_free_path = self._colour("mfp", colour, treat, ("skin", tuple(lengths), eta))
             scale *= most * widest
         else:
-            mean_free_path = self._colour("mfp", free_path) if free_path.image else self._index("mfp", free_path)
+            mean_free_path = self._index("mfp", free_path)
             scale *= factor_of_fixed_radius()
         # The radius is that of the light which is scattered evenly: 1 - g times the mean free path.
         return self._make("subsurface", [

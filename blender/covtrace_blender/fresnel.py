@@ -1,28 +1,17 @@
-"""Fresnel's reflectance, and means over all directions of what the angle of sight decides, each direction counting by its cosine."""
+"""Functions of the angle of sight that nodes have, by the formulas of Cycles."""
 
 import numpy as np
 
 
 def reflectance(cosine, eta):
-    """Reflectance of a smooth border of this index of refraction, at least 1, by Fresnel's equations; cosine: outside, an array."""
-    inside = np.sqrt(1 - (1 - cosine**2) / eta**2)
-    across = ((cosine - eta * inside) / (cosine + eta * inside)) ** 2
-    along = ((eta * cosine - inside) / (eta * cosine + inside)) ** 2
-    return (across + along) / 2
+    """Reflectance of a smooth border of this relative index of refraction, by Fresnel's equations; cosine: where the light comes from."""
+    inside = np.sqrt(np.maximum(1 - (1 - cosine**2) / eta**2, 0))  # 0 where all is reflected, which then makes 1
+    across = ((cosine - eta * inside) / np.maximum(cosine + eta * inside, 1e-30)) ** 2
+    along = ((eta * cosine - inside) / np.maximum(eta * cosine + inside, 1e-30)) ** 2
+    return np.where((cosine <= 0) | (inside <= 0), 1, (across + along) / 2)
 
 
-def mean_reflectance(eta):
-    """Its mean."""
-    cosine = (np.arange(1000) + 0.5) / 1000
-    return float(np.mean(2 * reflectance(cosine, eta) * cosine))
-
-
-def exponent_of_facing(blend):
-    """The exponent b of Layer Weight's Facing, 1 - cos^b; blend: a number or an array."""
+def facing(cosine, blend):
+    """Layer Weight's Facing: 0 from the front, 1 edge-on; blend: a number or an array."""
     blend = np.clip(blend, 0.0, 1 - 1e-5)
-    return np.where(blend < 0.5, 2 * blend, 0.5 / (1 - blend))
-
-
-def mean_facing(blend):
-    """Its mean."""
-    return float(1 - 2 / (exponent_of_facing(blend) + 2))
+    return 1 - cosine ** np.where(blend < 0.5, 2 * blend, 0.5 / (1 - blend))

@@ -3,23 +3,22 @@
 import numpy as np
 
 from .export_shaders import ShaderWriter
-from .export_sockets import Value
-from .fresnel import mean_facing, mean_reflectance
 from .shader_nodes.unsupported import Unsupported
+from .values import Value
 from .working_space import luminance
 
 
 def _blended(share, first, second):
     """first * (1 - share) + second * share of Values of one number; None where images would be multiplied."""
-    if not first.image and not second.image and first.constant == second.constant:
+    if not first.varies and not second.varies and first.constant == second.constant:
         return first
-    if share.image:
-        if first.image or second.image:
+    if share.varies:
+        if first.varies or second.varies:
             return None
         return share.times(second.constant - first.constant, first.constant)
-    if first.image and second.image:
+    if first.varies and second.varies:
         return None
-    if second.image:
+    if second.varies:
         return second.times(share.constant, first.constant * (1 - share.constant))
     return first.times(1 - share.constant, second.constant * share.constant)
 
@@ -27,23 +26,28 @@ def _blended(share, first, second):
 class OpacityReader(ShaderWriter):
     """Reads the opacity of shaders, and what weighs two of them where the rest lets light pass."""
 
-    def _passing(self, node):
-        """The share of light that a Transparent lets pass; its colour is told."""
-        colour = self._value(node.inputs["Color"])
-        if colour.image:
-            self.warn(f"material '{self.name}': an image as the colour of '{node.name}' is not supported; it is clear")
-            return 1.0
-        if max(colour.constant) - min(colour.constant) > 0.01:
-            self.warn(f"material '{self.name}': of the colour of '{node.name}' the brightness alone counts")
-        brightness = max(float(luminance(np.array(colour.constant))), 0)
-        return brightness if brightness < 0.9999 else 1.0  # beyond roundings
+    def _opacity_of_transparent(self, node):
+        """That of a Transparent, by the brightness of its colour, which is told where it is no grey."""
+        socket = node.inputs["Color"]
+        value = self._value(socket, True)
+        if value.varies:
+            self._tell_brightness_alone(node)
+            return value.inverse().clipped()
+        colour = self._value(socket)
+        if not colour.varies and max(colour.constant) - min(colour.constant) > 0.01:
+            self._tell_brightness_alone(node)
+        passing = max(value.constant, 0.0)
+        return Value(1 - passing if passing < 0.9999 else 0.0)  # beyond roundings
+
+    def _tell_brightness_alone(self, node):
+        self.warn(f"material '{self.name}': of the colour of '{node.name}' the brightness alone counts")
 
     def _opacity(self, node):
         """The opacity of a shader's node as the Value of a number; None as a node is black."""
         if node is None:
             return Value(1.0)
         if node.type == "BSDF_TRANSPARENT":
-            return Value(1 - self._passing(node))
+            return self._opacity_of_transparent(node)
         if node.type == "BSDF_PRINCIPLED":
             return self._value(node.inputs["Alpha"], True)
         if node.type not in ("MIX_SHADER", "ADD_SHADER"):
@@ -64,6 +68,8 @@ class OpacityReader(ShaderWriter):
             return first * (1 - share) + second * share
         if node is not None and node.type == "BSDF_PRINCIPLED":
             return np.clip(nodes.number(node.inputs["Alpha"]), 0, 1)
+        if node is not None and node.type == "BSDF_TRANSPARENT":
+            return 1 - np.clip(nodes.number(node.inputs["Color"]), 0, 1)
         return np.float32(self._opacity(node).constant)
 
     def _mixed_at(self, nodes, node):
@@ -72,18 +78,17 @@ class OpacityReader(ShaderWriter):
 
     def _share_at(self, nodes, node):
         """The share of the second part of a Mix."""
-        angular = self._angular_share(node.inputs[0])
-        return np.float32(angular[1]) if angular else np.clip(nodes.number(node.inputs[0]), 0, 1)
+        return np.clip(nodes.number(node.inputs[0]), 0, 1)
 
     def _share_of_opaque(self, node, share, first, second):
         """The share of the second part of a Mix in what stops light. share: that in all; first, second: both opacities."""
         for clear, whole in ((first, 1.0), (second, 0.0)):
-            if not clear.image and clear.constant == 0:
+            if not clear.varies and clear.constant == 0:
                 return Value(whole)
-        if not first.image and not second.image:
-            if first.constant == second.constant or not share.image and share.constant in (0, 1):
+        if not first.varies and not second.varies:
+            if first.constant == second.constant or not share.varies and share.constant in (0, 1):
                 return share
-            if not share.image:
+            if not share.varies:
                 return Value(share.constant * second.constant / max(_blended(share, first, second).constant, 1e-6))
 
         return self._baked_share(node, "share of opaque", lambda nodes: self._opaque_share_at(nodes, node), share)
@@ -106,22 +111,19 @@ class OpacityReader(ShaderWriter):
             return otherwise
 
     def _mix_share(self, node):
-        """The share of the second part of a Mix, where the angle of sight decides the mean over all directions."""
-        angular = self._angular_share(node.inputs[0])
-        share = Value(angular[1]) if angular else self._value(node.inputs[0], True)
-        return share if share.image else Value(min(max(share.constant, 0.0), 1.0))
+        """The share of the second part of a Mix."""
+        return self._value(node.inputs[0], True).clipped()
 
-    def _angular_share(self, socket):
-        """(index of refraction or None, mean over all directions) of a share that the angle of sight decides; None for
-        others."""
+    def _border_of(self, socket):
+        """The index of refraction of a border whose reflectance a socket gets; None of others."""
         node, output = self._linked(socket)
-        if node is None or node.type not in ("FRESNEL", "LAYER_WEIGHT"):
+        if node is None or node.inputs["Normal"].is_linked:
             return None
-        if node.type == "LAYER_WEIGHT" and output.identifier == "Facing":
-            return None, mean_facing(self._plain(node.inputs["Blend"]))
-        eta = max(self._plain(node.inputs["IOR"]) if node.type == "FRESNEL" else
-                  1 / max(1 - self._plain(node.inputs["Blend"]), 1e-5), 1.0001)
-        return eta, mean_reflectance(eta)
+        if node.type == "FRESNEL":
+            return max(self._plain(node.inputs["IOR"]), 1.0001)
+        if node.type == "LAYER_WEIGHT" and output.identifier == "Fresnel":
+            return max(1 / max(1 - self._plain(node.inputs["Blend"]), 1e-5), 1.0001)
+        return None
 
     def _parts(self, node):
         """The shaders of a Mix, None being black, and those of an Add but for those that shine alone."""

@@ -1,6 +1,5 @@
 """Meshes in files, of which each has one material; objects consist of them."""
 
-from .export_shaders import numbers
 from .placement import placement
 from .shader_nodes.light_path import RAYS
 from .visibility import hidden_from
@@ -17,10 +16,8 @@ class Part:
         """pbrt's light and shape of it. hidden: the kinds of rays that do not see it; is_holdout: whether all of its object is one."""
         emission, light = self.variant.emission, ""
         if emission:
-            image = f' "string filename" "{emission.texture}"' if emission.texture else ""
-            scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else f'"rgb L" [{numbers(emission.radiance)}]'
             passes = ' "bool letslightpass" true' if self.variant.is_light_alone else ""
-            light = f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true{passes}\n'
+            light = f'AreaLightSource "diffuse" {emission.parameters()} "bool twosided" true{passes}\n'
         # Media end at their border for every ray.
         unseen = set() if self.variant.is_volume_alone else hidden | (set(RAYS) - set(self.variant.rays))
         tubes = f' "integer tubesides" {self.tube_sides}' if self.tube_sides else ""

@@ -1,7 +1,7 @@
 """Trees with sums of shaders: both parts of a sum are there in full, and what lets light pass is a part that is no surface."""
 
 from .export_principled import PrincipledExporter
-from .export_sockets import Value
+from .values import Value
 
 ROUNDING = 1e-6  # of opacities
 
@@ -26,7 +26,7 @@ class SumExporter(PrincipledExporter):
     @staticmethod
     def _is_clear(opacity):
         """Whether light may pass, by the Value of an opacity."""
-        return bool(opacity.image) or opacity.constant < 1 - ROUNDING
+        return bool(opacity.varies) or opacity.constant < 1 - ROUNDING
 
     def _whole(self, node):
         """The pbrt name of a tree, with what it lets pass."""

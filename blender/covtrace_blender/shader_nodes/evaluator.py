@@ -89,10 +89,19 @@ class Evaluator:
 
     def output(self, node, output):
         """(value, type of its socket)."""
-        key = (node.path, output.identifier)
+        key, place = (node.path, output.identifier), self.place
         if key not in self._known:
-            self._known[key] = self._evaluate(node, output)
-        return self._known[key]
+            before, place.hangs_on_angle = place.hangs_on_angle, False
+            self._known[key] = *self._evaluate(node, output), place.hangs_on_angle
+            place.hangs_on_angle |= before
+        value, kind, hangs_on_angle = self._known[key]
+        place.hangs_on_angle |= hangs_on_angle
+        return value, kind
+
+    def look_at(self, cosine):
+        """Goes on at this cosine of the angle of sight; what does not hang on it is not evaluated again."""
+        self.place.sight = cosine
+        self._known = {key: found for key, found in self._known.items() if not found[2]}
 
     def _evaluate(self, node, output):
         if node.type not in NODES:
@@ -104,4 +113,14 @@ class Evaluator:
 
 def evaluated(get, place):
     """The value of a function of an Evaluator at places, the mean over the angles of sight where it hangs on those."""
-    return sight.mean_over_angles(lambda place: get(Evaluator(place)), place)
+    return sight.mean_over_angles(get, Evaluator(place))
+
+
+def evaluated_at(get, place, cosines, count, channels):
+    """(count, k * channels) of a function that gives numbers (channels: 1) or vectors (3) at the `count` places of `place`: its values at k
+    cosines of the angle of sight, one after the other."""
+    nodes, found = Evaluator(place), []
+    for cosine in cosines:
+        nodes.look_at(cosine)
+        found.append(np.broadcast_to(np.reshape(get(nodes), (-1, channels)), (count, channels)))
+    return np.concatenate(found, axis=1)

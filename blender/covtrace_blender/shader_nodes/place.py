@@ -2,7 +2,7 @@
 
 Each has `ray`: the kind of ray that sees them, one of light_path.RAYS, None where that is not known; `images`: those that nodes
 have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from
-place to place; `sight`: the cosine of the angle of sight, and `hangs_on_angle`: whether nodes have asked for it.
+place to place; `sight`: the cosine of the angle of sight, one or (n,), and `hangs_on_angle`: whether nodes have asked for it.
 """
 
 import numpy as np
@@ -39,6 +39,9 @@ class UvPlace(_Place):
     def __init__(self, uv, pixels_of, ray=None, owner=None):
         super().__init__(pixels_of, ray, owner)
         self.uv, self.uv_maps = uv, []
+
+    def __len__(self):
+        return len(self.uv)
 
     @property
     def is_uniform(self):
@@ -136,6 +139,9 @@ class BodyPlace(_Place):
     def __init__(self, body, texels, shift, pixels_of, ray=None, owner=None):
         super().__init__(pixels_of, ray, owner)
         self._body, self._texels, self._shift, self._known = body, texels, shift, {}
+
+    def __len__(self):
+        return len(self._texels)
 
     @property
     def is_uniform(self):
