@@ -344,10 +344,13 @@ class MaterialExporter(SumExporter):
         if not eta:
             return None
         tint = self._value(second.inputs["Color"])
-        if tint.varies or min(tint.constant) < 0.99:
-            self.warn(f"material '{self.name}': the colour of '{second.name}' over a border is not supported and left out")
+        is_tinted = tint.varies or min(tint.constant) < 0.99
         if kinds[0] == "BSDF_REFRACTION":
+            if is_tinted:
+                self.warn(f"material '{self.name}': the colour of '{second.name}' over a border is not supported and left out")
             return self._clear(self._value(first.inputs["Color"]), self._rough(first), eta, self._normal_map(first))
+        if is_tinted:
+            return None
         return self._make("coateddiffuse", [
             self._colour("reflectance", self._value(first.inputs["Color"])), *self._roughness(self._rough(second)),
             f'"float eta" {eta:.9g}', '"bool reflectsthroughcoat" true', *self._normal_map(first)])

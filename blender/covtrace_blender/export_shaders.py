@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .angles import MOST_IMAGES
+from .angles import MOST_CONSTANTS, MOST_IMAGES
 from .export_sockets import SocketReader
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .tangents import Tangent
@@ -43,9 +43,10 @@ class ShaderWriter(SocketReader):
         texture; key: tells that from others, "" being none. shines: whether images may be brighter than 1."""
         rest = treat, key, most, shines
         if isinstance(value, ByAngle):
+            if key and not value.parts[0].varies:
+                value = value.resampled(MOST_CONSTANTS)  # treated values are not linear where these are
             return self._facing(kind, value.cosines, [self._texture(kind, part, *rest) for part in value.parts])
         if isinstance(value, Between) and key:
-            # The treated values are no longer linear in the share.
             few = value.share.resampled(MOST_IMAGES)
             return self._facing(kind, few.cosines, [self._texture_between(kind, value, part.constant, treat, key) for part in few.parts])
         if isinstance(value, Between):

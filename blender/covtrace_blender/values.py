@@ -69,13 +69,14 @@ class ByAngle(Value):
         return ByAngle(self.cosines, [part.clipped() for part in self.parts])
 
     def resampled(self, most):
-        """The same of numbers, at `most` cosines that are about as far apart by these."""
-        if len(self.parts) <= most:
-            return self
-        values = np.array([part.constant for part in self.parts])
-        way = np.concatenate(([0], np.cumsum(np.abs(np.diff(values)) + 1e-6)))
+        """The same of constants at `most` cosines, between which it changes about as much."""
+        values = np.array([part.constant for part in self.parts], float)
+        rows = values.reshape(len(values), -1)
+        way = np.concatenate(([0], np.cumsum(np.abs(np.diff(rows, axis=0)).max(axis=1) + 1e-6)))
         cosines = np.interp(np.linspace(0, way[-1], most), way, self.cosines)
-        return ByAngle([float(c) for c in cosines], [Value(float(v)) for v in np.interp(cosines, self.cosines, values)])
+        rows = np.column_stack([np.interp(cosines, self.cosines, column) for column in rows.T])
+        parts = [Value(float(row[0]) if values.ndim == 1 else tuple(float(v) for v in row)) for row in rows]
+        return ByAngle([float(c) for c in cosines], parts)
 
     def is_plainly_placed(self):
         return all(part.is_plainly_placed() for part in self.parts)
