@@ -16,11 +16,10 @@ class Emission:
 
     def parameters(self):
         """pbrt's."""
-        if self.texture:
-            return f'"texture L" "{self.texture}" "float scale" {self.radiance[0]:.9g}'
         if self.file:
             return f'"string filename" "{self.file}" "float scale" {self.radiance[0]:.9g}'
-        return f'"rgb L" [{numbers(self.radiance)}]'
+        texture = f' "texture radiance" "{self.texture}"' if self.texture else ""
+        return f'"rgb L" [{numbers(self.radiance)}]{texture}'
 
 
 class Light:
