@@ -58,7 +58,8 @@ void fill_hit(const SurfacePoint& point, Vec3 direction, SurfaceHit& hit) {
     hit.position = point.position.to_float();
     hit.ng = point.ng.to_float();
     hit.ns = point.ns.to_float();
-    hit.facing = std::min(1.0f, std::abs(dot(hit.ns, direction)));
+    const float cosine = std::min(1.0f, std::abs(dot(hit.ns, direction)));
+    hit.facing = dot(hit.ng, direction) > 0 ? -cosine : cosine;
     hit.dpdu = point.dpdu.to_float();
     hit.dpdv = point.dpdv.to_float();
     hit.tangent = point.tangent.to_float();

@@ -54,7 +54,7 @@ struct AlphaPlace {
     Vec3 position;         ///< world space
     VertexPlace vertices;  ///< in a mesh whose vertices have values
     Vec3 normal = {};      ///< unit, of the geometry, world space
-    float facing = -1;     ///< SurfaceHit::facing; negative where it is for all directions
+    float facing = kSeenFromNowhere;  ///< SurfaceHit::facing
 };
 /// Opacity of a shape's alpha texture at a place.
 using AlphaLookup = std::function<float(TextureId, const AlphaPlace&)>;

@@ -19,6 +19,9 @@ struct Ray {
     uint32_t sample = 0;          ///< tells the rays of a pixel's sample from those of others
 };
 
+/// The cosine of the angle of sight where there is no direction of sight.
+inline constexpr float kSeenFromNowhere = 2;
+
 /// The point where a ray meets a surface, all in world space at the ray's time.
 struct SurfaceHit {
     float t = 0;  ///< distance along the ray
@@ -27,9 +30,9 @@ struct SurfaceHit {
     Vec3 ng;  ///< unit geometric normal on the shape's outside (emitting) side; not turned to the
               ///< viewer
     Vec3 ns;  ///< unit shading normal in the hemisphere of ng
-    float facing = -1;  ///< cosine, >= 0, between ns and the ray; negative where there was none
-    Vec3 dpdu, dpdv;    ///< derivatives of the position by `uv`
-    Vec3 tangent;       ///< of shading: the mesh's own, else dpdu
+    float facing = kSeenFromNowhere;  ///< cosine between ns and the ray, negative from behind ng
+    Vec3 dpdu, dpdv;                  ///< derivatives of the position by `uv`
+    Vec3 tangent;                     ///< of shading: the mesh's own, else dpdu
     Vec2 uv;
     float time = 0;
     uint32_t sample = 0;     ///< the ray's

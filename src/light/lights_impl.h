@@ -67,9 +67,11 @@ struct Lights::Impl {
                                float time) const {
         TexturePoint at{
             e.uv(light, point, time), point.position, {}, point.normal, e.vertices(light, point)};
-        if (textures && textures->has_facing())
-            at.facing =
-                std::min(1.0f, std::abs(dot(e.shading_normal(light, point, time), point.wi)));
+        if (textures && textures->has_facing()) {
+            const Vec3 normal = e.shading_normal(light, point, time);
+            const float cosine = std::min(1.0f, std::abs(dot(normal, point.wi)));
+            at.facing = dot(point.normal, point.wi) > 0 ? -cosine : cosine;
+        }
         return at;
     }
     /// Radiance of an area light at a place with the unit normal n, by its images, its cone and the

@@ -235,13 +235,14 @@ FacingTexture TextureBuilder::facing(Declared& d) {
         for (size_t i = 0; i < parts.size(); ++i)
             t.cosines.push_back(float(i) / std::max(1.0f, float(parts.size() - 1)));
     const bool increase = std::ranges::is_sorted(t.cosines, std::ranges::less_equal{}) &&
-                          std::ranges::all_of(t.cosines, [](float c) { return c >= 0 && c <= 1; });
+                          std::ranges::all_of(t.cosines, [](float c) { return c >= -1 && c <= 1; });
     if (!increase || t.cosines.size() != parts.size())
         d.entity.refuse(
             "cosines",
             "parameter \"cosines\" of a texture \"facing\" must have a number for each of "
             "its " +
-                std::to_string(parts.size()) + " textures, from 0 to 1, each above the one before");
+                std::to_string(parts.size()) +
+                " textures, from -1 to 1, each above the one before");
     for (const std::string& name : parts)
         t.textures.push_back(named(name, "textures", where, d.is_spectrum));
     return t;

@@ -83,10 +83,12 @@ struct AsideTexture {
 };
 /// Textures by the angle of sight: linear over the cosine between the direction that the surface is
 /// seen from and its interpolated normal, which no map has turned; constant beyond the first and
-/// the last cosine. Where a place is not seen from anywhere, the mean over all directions.
+/// the last cosine. From behind the surface the cosine is negative, or the same as in front where
+/// all that are given are positive. Where a place is not seen from anywhere, the mean over all
+/// directions.
 struct FacingTexture {
     std::vector<TextureId> textures;  ///< at least one
-    std::vector<float> cosines;       ///< one for each, in [0, 1], strictly increasing
+    std::vector<float> cosines;       ///< one for each, in [-1, 1], strictly increasing
 };
 /// Round dots of one texture on another, in randomly chosen unit cells of (s, t).
 struct DotsTexture {

@@ -158,7 +158,8 @@ struct Analyser {
 
     /// The angle of sight varies as slowly as the normal, too: what is left is the textures'.
     SpatialCovariance2 operator()(const FacingNode& node, const ImageSpectrum*) const {
-        const FacingNeighbours n = facing_neighbours(node.between, std::max(0.0f, at.facing));
+        const FacingNeighbours n =
+            facing_neighbours(node.between, at.facing == kSeenFromNowhere ? 0.0f : at.facing);
         if (!(n.share > 0)) return of(n.first);
         return of_sum(of(n.first), (1 - n.share) * eval(graph, n.first, at), of(n.second),
                       n.share * eval(graph, n.second, at));

@@ -89,7 +89,7 @@ struct Evaluator {
         return Rgb(eval(graph, node.tex, at).r >= node.cutoff ? 1.0f : 0.0f);
     }
     Rgb operator()(const FacingNode& node) const {
-        if (!(at.facing >= 0)) {
+        if (at.facing == kSeenFromNowhere) {
             Rgb sum;
             for (size_t i = 0; i < node.mean_shares.size(); ++i)
                 sum += node.mean_shares[i] * eval(graph, node.between.textures[i], at);
@@ -142,6 +142,7 @@ TextureId active_texture(const DotsTexture& node, const TexturePoint& at) {
 
 FacingNeighbours facing_neighbours(const FacingTexture& texture, float cosine) {
     const auto& cosines = texture.cosines;
+    if (!(cosines.front() < 0)) cosine = std::abs(cosine);
     const auto above = std::ranges::upper_bound(cosines, cosine);
     if (above == cosines.begin()) return {texture.textures.front(), texture.textures.front(), 0};
     if (above == cosines.end()) return {texture.textures.back(), texture.textures.back(), 0};
@@ -151,20 +152,24 @@ FacingNeighbours facing_neighbours(const FacingTexture& texture, float cosine) {
 }
 
 std::vector<float> facing_mean_shares(const FacingTexture& texture) {
-    // The density of the cosine c is 2 c. Between two neighbours a and b the second one has the
-    // share (c - a) / (b - a), the integral of which over the density is
-    // (2 (b^3 - a^3) / 3 - a (b^2 - a^2)) / (b - a).
+    // The density of the cosine c is 2 |c|, or half of that where both sides count. Its integral
+    // from 0 is c |c|, and that of c times it 2 |c|^3 / 3. Between two neighbours a and b the
+    // second one has the share (c - a) / (b - a).
     const auto& cosines = texture.cosines;
+    const auto all_below = [](double c) { return c * std::abs(c); };
+    const auto moment_below = [](double c) { return 2.0 / 3 * std::abs(c * c * c); };
+    const double least = cosines.front() < 0 ? -1 : 0;
     std::vector<double> shares(cosines.size(), 0.0);
-    shares.front() += sqr(double(cosines.front()));
-    shares.back() += 1 - sqr(double(cosines.back()));
+    shares.front() += all_below(cosines.front()) - all_below(least);
+    shares.back() += 1 - all_below(cosines.back());
     for (size_t i = 1; i < cosines.size(); ++i) {
         const double a = cosines[i - 1], b = cosines[i];
-        const double all = b * b - a * a;
-        const double second = (2 * (b * b * b - a * a * a) / 3 - a * all) / (b - a);
+        const double all = all_below(b) - all_below(a);
+        const double second = (moment_below(b) - moment_below(a) - a * all) / (b - a);
         shares[i - 1] += all - second;
         shares[i] += second;
     }
+    for (double& share : shares) share /= 1 - least;
     return {shares.begin(), shares.end()};
 }
 

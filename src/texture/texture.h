@@ -28,9 +28,9 @@ struct TexturePoint {
     PointFootprint footprint = {};
     Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
     VertexPlace vertices = {};
-    /// Cosine between the interpolated normal and the direction that the place is seen from, on
-    /// either side; negative where there is none.
-    float facing = -1;
+    /// Cosine between the interpolated normal and the direction that the place is seen from,
+    /// negative behind the surface.
+    float facing = kSeenFromNowhere;
 };
 
 struct TextureGraph;

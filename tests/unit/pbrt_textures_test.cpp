@@ -142,7 +142,7 @@ TEST(SceneTextures, FacingTakesTexturesByTheCosine) {
               "each of its 2 textures"},
              {"\"string textures\" [ \"a\" \"b\" ] \"float cosines\" [ 0.5 0.5 ]",
               "each above the one before"},
-             {"\"string textures\" [ \"a\" \"b\" ] \"float cosines\" [ 0 1.5 ]", "from 0 to 1"},
+             {"\"string textures\" [ \"a\" \"b\" ] \"float cosines\" [ 0 1.5 ]", "from -1 to 1"},
              {"\"string textures\" [ \"a\" \"t\" ]", "refers to itself"}})
         EXPECT_TRUE(contains(world_error(parts + text), expected)) << text;
 }

@@ -20,12 +20,12 @@ TexturePoint seen_at(float cosine) {
     return at;
 }
 
-/// 1 at the rim, 0.2 in the middle, and something between.
+/// 1 at the rim, 0.2 in the middle, and something between; more behind.
 TextureId rim(TextureScene& scene) {
-    return scene.add(
-        FacingTexture{{scene.add_float(1), scene.add_float(0.7f), scene.add_float(0.2f)},
-                      {0, 0.3f, 1}},
-        false);
+    return scene.add(FacingTexture{{scene.add_float(2), scene.add_float(1), scene.add_float(0.7f),
+                                    scene.add_float(0.2f)},
+                                   {-1, 0, 0.3f, 1}},
+                     false);
 }
 
 TEST(FacingTexture, IsLinearOverTheCosine) {
@@ -43,6 +43,20 @@ TEST(FacingTexture, IsLinearOverTheCosine) {
     EXPECT_FALSE(store.is_constant(id));
 }
 
+TEST(FacingTexture, HasTheSameValueBehindUnlessACosineIsNegative) {
+    TextureScene scene;
+    const TextureId front = scene.add_float(0.25f), behind = scene.add_float(1);
+    const TextureId alike = scene.add(FacingTexture{{front, behind}, {0, 1}}, false);
+    const TextureId step = scene.add(FacingTexture{{behind, front}, {-1e-6f, 0}}, false);
+    const TextureStore store(scene.description);
+    for (float cosine : {0.1f, 0.6f, 1.0f}) {
+        EXPECT_EQ(store.eval_float(alike, seen_at(-cosine)),
+                  store.eval_float(alike, seen_at(cosine)));
+        EXPECT_EQ(store.eval_float(step, seen_at(-cosine)), 1);
+        EXPECT_EQ(store.eval_float(step, seen_at(cosine)), 0.25f);
+    }
+}
+
 TEST(FacingTexture, OfOneValueIsConstant) {
     TextureScene scene;
     const TextureId half = scene.add_float(0.5f);
@@ -54,8 +68,12 @@ TEST(FacingTexture, OfOneValueIsConstant) {
 }
 
 TEST(FacingTexture, FromNowhereIsTheMeanOverAllDirections) {
-    for (const std::vector<float>& cosines :
-         {std::vector<float>{0, 0.3f, 1}, {0.1f, 0.2f, 0.7f}, {0.9f, 0.95f, 0.96f}}) {
+    for (const std::vector<float>& cosines : {std::vector<float>{0, 0.3f, 1},
+                                              {0.1f, 0.2f, 0.7f},
+                                              {0.9f, 0.95f, 0.96f},
+                                              {-1, 0.3f, 1},
+                                              {-0.8f, -0.3f, -0.1f},
+                                              {-0.5f, 0, 0.7f}}) {
         TextureScene scene;
         const TextureId id = scene.add(
             FacingTexture{{scene.add_float(1), scene.add_float(0.1f), scene.add_float(0.6f)},
@@ -65,8 +83,11 @@ TEST(FacingTexture, FromNowhereIsTheMeanOverAllDirections) {
         // Equal steps of the squared cosine are equal shares of the directions.
         constexpr int kSteps = 20000;
         double sum = 0;
-        for (int i = 0; i < kSteps; ++i)
-            sum += store.eval_float(id, seen_at(std::sqrt((float(i) + 0.5f) / kSteps)));
+        for (int i = 0; i < kSteps; ++i) {
+            const float cosine = std::sqrt((float(i) + 0.5f) / kSteps);
+            sum += 0.5f *
+                   (store.eval_float(id, seen_at(cosine)) + store.eval_float(id, seen_at(-cosine)));
+        }
         EXPECT_NEAR(store.eval_float(id, {{0.5f, 0.5f}, {}}), sum / kSteps, 1e-4);
         EXPECT_NEAR(store.mean(id).r, sum / kSteps, 1e-4);
     }
@@ -101,6 +122,10 @@ TEST(FacingTexture, HitsTellTheCosineToTheInterpolatedNormal) {
         SurfaceHit hit;
         ASSERT_TRUE(moved.intersect(ray, hit));
         EXPECT_NEAR(hit.facing, std::abs(dot(hit.ns, ray.direction)), 1e-6f);
+        const Ray from_within{to, ray.direction};
+        ASSERT_TRUE(moved.intersect(from_within, hit));
+        EXPECT_NEAR(hit.facing, -std::abs(dot(hit.ns, ray.direction)), 1e-6f);
+        ASSERT_TRUE(moved.intersect(ray, hit));
         most = std::max(most, std::abs(hit.facing - std::abs(dot(hit.ng, ray.direction))));
     }
     EXPECT_GT(most, 0.05f);
