@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 
 from . import edges
-from .angles import GRID, of_constants, of_places
+from .angles import BOTH_SIDES, of_constants, of_places
 from .baked import Baked, Layout, channels_of, images_of
 from .body_baking import bake_body
 from .parts import PART, by_parts
@@ -74,11 +74,11 @@ class Baker:
         is_mean = place.hangs_on_angle and not by_angle
         if place.is_uniform:
             if is_by_angle:
-                return of_constants(get, place_of(np.zeros((len(GRID), 2))), channels)
+                return of_constants(get, place_of(np.zeros((len(BOTH_SIDES), 2))), channels)
             return Baked(constant=value, is_mean=is_mean)
         low, high = surface.range(place.uv_maps[0])
         probes = low + random.random((PROBES, 2)) * np.maximum(high - low, 1e-3)
-        angles = of_places(get, place_of(probes.repeat(len(GRID), axis=0)), channels) if is_by_angle else None
+        angles = of_places(get, place_of(probes.repeat(len(BOTH_SIDES), axis=0)), channels) if is_by_angle else None
 
         def values_at(uv):
             if angles:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import edges
-from .angles import GRID, of_constants, of_places
+from .angles import BOTH_SIDES, of_constants, of_places
 from .baked import Baked, BakedImage, Layout, channels_of
 from .parts import by_parts
 from .shader_nodes.evaluator import evaluated, evaluated_at
@@ -27,10 +27,10 @@ def bake_body(get, body, pixels_of, ray, owner, by_angle=True):
     if not count:
         return Baked(constant=np.zeros(probe.shape[1:]), kinds=kinds, is_mean=is_mean)
     if is_by_angle and not kinds:
-        return of_constants(get, place_of(probes[:1].repeat(len(GRID))), channels)
+        return of_constants(get, place_of(probes[:1].repeat(len(BOTH_SIDES))), channels)
     if not kinds or not is_by_angle and probe.shape in ((), (3,)):
         return Baked(constant=probe, kinds=kinds, is_mean=is_mean)
-    angles = of_places(get, place_of(probes.repeat(len(GRID))), channels) if is_by_angle else None
+    angles = of_places(get, place_of(probes.repeat(len(BOTH_SIDES))), channels) if is_by_angle else None
     width = channels * (len(angles.cosines) if angles else 1)
 
     def values_at(chosen, shift):

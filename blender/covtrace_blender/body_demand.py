@@ -5,7 +5,7 @@ import io
 import numpy as np
 
 from . import body_normals
-from .angles import GRID, of_constants, of_places
+from .angles import BOTH_SIDES, of_constants, of_places
 from .atlas import MARGIN
 from .atlases import digest
 from .baked import Baked, BakedImage, Layout, channels_of
@@ -62,8 +62,8 @@ class _Counter:
         angles = None
         if place.hangs_on_angle and by_angle:
             if place.is_uniform:
-                return of_constants(get, UvPlace(np.zeros((len(GRID), 2), np.float32), self._pixels_of, self.ray, self.owner), channels_of(value))
-            angles = of_places(get, place_of(len(GRID)), channels_of(value))
+                return of_constants(get, UvPlace(np.zeros((len(BOTH_SIDES), 2), np.float32), self._pixels_of, self.ray, self.owner), channels_of(value))
+            angles = of_places(get, place_of(len(BOTH_SIDES)), channels_of(value))
         if place.is_uniform:
             return Baked(constant=value)
         if surface.body:

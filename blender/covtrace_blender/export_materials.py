@@ -109,8 +109,6 @@ class MaterialExporter(SumExporter):
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
             return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
         nodes = list(all_nodes(material.node_tree))
-        if any(node.type == "NEW_GEOMETRY" and node.outputs["Backfacing"].is_linked for node in nodes):
-            self.warn(f"material '{self.name}': surfaces look from behind as from their front; Backfacing is 0")
         if any(node.type in sight.NODES and node.inputs["Normal"].is_linked and any(output.is_linked for output in node.outputs) for node in nodes):
             self.warn(f"material '{self.name}': what hangs on the angle of sight does so by the smooth normal, not by that of bumps or maps")
         for kind, text in surroundings.TOLD.items():
@@ -336,24 +334,16 @@ class MaterialExporter(SumExporter):
                          self._share_of_opaque(node, amount, *opacities))
 
     def _under_border(self, node, first, second):
-        """A mixture of two shaders by the reflectance of a border that is one surface; None of others."""
-        kinds = (first.type if first else None, second.type if second else None)
-        if kinds not in (("BSDF_DIFFUSE", "BSDF_GLOSSY"), ("BSDF_REFRACTION", "BSDF_GLOSSY")):
+        """The body of glass that a Refraction is with a Glossy by the reflectance of a border; None of other mixtures."""
+        if (first and first.type, second and second.type) != ("BSDF_REFRACTION", "BSDF_GLOSSY"):
             return None
         eta = self._border_of(node.inputs[0])
         if not eta:
             return None
         tint = self._value(second.inputs["Color"])
-        is_tinted = tint.varies or min(tint.constant) < 0.99
-        if kinds[0] == "BSDF_REFRACTION":
-            if is_tinted:
-                self.warn(f"material '{self.name}': the colour of '{second.name}' over a border is not supported and left out")
-            return self._clear(self._value(first.inputs["Color"]), self._rough(first), eta, self._normal_map(first))
-        if is_tinted:
-            return None
-        return self._make("coateddiffuse", [
-            self._colour("reflectance", self._value(first.inputs["Color"])), *self._roughness(self._rough(second)),
-            f'"float eta" {eta:.9g}', '"bool reflectsthroughcoat" true', *self._normal_map(first)])
+        if tint.varies or min(tint.constant) < 0.99:
+            self.warn(f"material '{self.name}': the colour of '{second.name}' over a border is not supported and left out")
+        return self._clear(self._value(first.inputs["Color"]), self._rough(first), eta, self._normal_map(first))
 
     def _add_shader(self, node):
         """The surface of a sum of at most one with light."""

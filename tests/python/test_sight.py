@@ -23,10 +23,11 @@ def facing(blend):
 
 
 def reflectance(cosine, eta):
-    """Fresnel's, as Cycles has it."""
-    g = np.sqrt(eta**2 - 1 + cosine**2)
-    a, b = (g - cosine) / (g + cosine), (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1)
-    return 0.5 * a**2 * (1 + b**2)
+    """Fresnel's, as Cycles has it, which is that from within behind the surface."""
+    c, eta = np.abs(cosine), np.where(cosine < 0, 1 / eta, eta)
+    g = np.sqrt(np.maximum(eta**2 - 1 + c**2, 1e-12))
+    a, b = (g - c) / (g + c), (c * (g + c) - 1) / (c * (g - c) + 1)
+    return np.where(eta**2 - 1 + c**2 > 0, 0.5 * a**2 * (1 + b**2), 1)
 
 
 def power(cosine, blend):
@@ -45,27 +46,37 @@ class SightTest(unittest.TestCase):
         return baking.Baker(lambda image: image.values).bake(lambda nodes: nodes.number(socket), baking.Surface(), **options)
 
     def test_few_constants_tell_borders_and_facing(self):
-        cases = [(fresnel(index), reflectance(COSINES, index)) for index in (1.05, 1.2, 1.45, 1.8, 2.5)]
-        cases += [(facing(blend), power(COSINES, blend)) for blend in (0.2, 0.35, 0.5, 0.8, 0.95)]
-        for node, exact in cases:
+        cases = [(fresnel(index), lambda c, index=index: reflectance(c, index), -1) for index in (1.05, 1.2, 1.45, 1.8, 2.5)]
+        cases += [(facing(blend), lambda c, blend=blend: power(c, blend), 0) for blend in (0.2, 0.35, 0.5, 0.8, 0.95)]
+        for node, exact, first in cases:
             with self.subTest(node.type, inputs=node.inputs[0].default_value):
                 value = self.baked(node).value()
                 self.assertIsInstance(value, ByAngle)
-                self.assertLessEqual(len(value.cosines), 20)
-                self.assertTrue((np.diff(value.cosines) > 0).all() and value.cosines[0] == 0 and value.cosines[-1] == 1)
-                found = np.interp(COSINES, value.cosines, [part.constant for part in value.parts])
-                np.testing.assert_allclose(found, exact, atol=0.01)
+                self.assertTrue((np.diff(value.cosines) > 0).all() and value.cosines[0] == first and value.cosines[-1] == 1)
+                self.assertLessEqual(sum(cosine >= 0 for cosine in value.cosines), 20)
+                for cosines in (COSINES, *([-COSINES[1:]] if first < 0 else [])):
+                    found = np.interp(cosines, value.cosines, [part.constant for part in value.parts])
+                    errors = np.abs(found - exact(cosines))
+                    self.assertLess(errors.mean(), 0.003)
+                    if cosines is COSINES:  # at the critical angle, behind the surface, the slope has no bound
+                        self.assertLess(errors.max(), 0.01)
 
     def test_edges_of_ramps_stay_sharp(self):
         value = self.baked(maths("GREATER_THAN", (facing(0.5), 0), 0.3)).value()
         found = np.interp(COSINES, value.cosines, [part.constant for part in value.parts])
         self.assertLess(np.mean(np.abs(found - (1 - COSINES > 0.3))), 0.01)
 
+    def test_both_sides_are_told_apart(self):
+        geometry = Node("NEW_GEOMETRY", outputs={"Backfacing": "VALUE"})
+        value = self.baked(geometry).value()
+        found = np.interp((-1, -0.3, -1e-5, 0, 0.2, 1), value.cosines, [part.constant for part in value.parts])
+        np.testing.assert_allclose(found, (1, 1, 1, 0, 0, 0), atol=1e-6)
+
     def test_extremes_of_both_nodes_are_numbers(self):
         for node in (fresnel(0.0), fresnel(0.7), fresnel(1.0), fresnel(1000.0), facing(-1.0), facing(0.0), facing(1.0), facing(7.0)):
             with self.subTest(node.type, inputs=node.inputs[0].default_value):
-                nodes = Evaluator(UvPlace(np.zeros((len(COSINES), 2), np.float32), None))
-                nodes.place.sight = COSINES
+                nodes = Evaluator(UvPlace(np.zeros((2001, 2), np.float32), None))
+                nodes.place.sight = np.linspace(-1, 1, 2001)
                 values = nodes.number(input_of(node))
                 self.assertTrue(((values >= 0) & (values <= 1)).all())
 

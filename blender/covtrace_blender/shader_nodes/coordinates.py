@@ -29,7 +29,7 @@ _GEOMETRY = {"Position": "WORLD", "Normal": "WORLD NORMAL", "True Normal": "WORL
 
 def _geometry(node, output, inputs):
     if output.identifier == "Backfacing":
-        return np.float32(0)  # surfaces are the same from behind; MaterialExporter tells
+        return inputs.place.is_behind().astype(np.float32)
     if output.identifier in ("Random Per Island", "Pointiness"):
         return inputs.place.coordinates(node, output.identifier)[:, 0]
     if output.identifier not in _GEOMETRY:

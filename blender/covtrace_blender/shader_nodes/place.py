@@ -2,7 +2,8 @@
 
 Each has `ray`: the kind of ray that sees them, one of light_path.RAYS, None where that is not known; `images`: those that nodes
 have asked for; `owner`: the Owner of the surface, or None; `is_uniform`: whether they have asked for nothing that changes from
-place to place; `sight`: the cosine of the angle of sight, one or (n,), and `hangs_on_angle`: whether nodes have asked for it.
+place to place; `sight`: the cosine of the angle of sight, one or (n,), below 0 behind the surface, and `hangs_on_angle`: whether nodes have
+asked for it.
 """
 
 import numpy as np
@@ -22,9 +23,14 @@ class _Place:
         self.sight, self.hangs_on_angle = COSINES[0], False
 
     def cosine(self):
-        """That of the angle of sight."""
+        """That of the angle of sight, on either side."""
         self.hangs_on_angle = True
-        return self.sight
+        return np.abs(self.sight)
+
+    def is_behind(self):
+        """Whether the surface is seen from behind."""
+        self.hangs_on_angle = True
+        return np.less(self.sight, 0)
 
     def pixels(self, image):
         """(h, w, 4) linear, from the top."""
@@ -75,6 +81,9 @@ class VolumePlace(_Place):
 
     def cosine(self):
         return np.float32(1)  # as in Cycles, which takes the direction of sight for the normal
+
+    def is_behind(self):
+        return np.False_
 
     def uv_of(self, node, name):
         return np.zeros((len(self._places), 3), np.float32)

@@ -22,15 +22,20 @@ def mean_over_angles(get, nodes):
     return sum(values) / np.float32(ANGLES)
 
 
+def _of_border(place, eta):
+    """The reflectance of a border of this index, which is that from within behind the surface."""
+    return reflectance(place.cosine(), np.where(place.is_behind(), 1 / eta, eta))
+
+
 def _fresnel(node, output, inputs):
-    return reflectance(inputs.place.cosine(), np.maximum(inputs.number("IOR"), 1e-5))
+    return _of_border(inputs.place, np.maximum(inputs.number("IOR"), 1e-5))
 
 
 def _layer_weight(node, output, inputs):
     blend = inputs.number("Blend")
     if output.identifier == "Facing":
         return facing(inputs.place.cosine(), blend)
-    return reflectance(inputs.place.cosine(), 1 / np.maximum(1 - blend, 1e-5))
+    return _of_border(inputs.place, 1 / np.maximum(1 - blend, 1e-5))
 
 
 NODES = {"FRESNEL": _fresnel, "LAYER_WEIGHT": _layer_weight}
