@@ -267,19 +267,6 @@ class MaterialsTest(BlenderTest):
                 self.assertEqual(any("is not supported" in w for w in self.warnings), kind != "ShaderNodeBsdfSheen", self.warnings)
             bpy.data.objects.remove(plane)
 
-    def test_surfaces_are_as_from_their_front(self):
-        m = material()
-        tree = m.node_tree
-        mix, light = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeEmission")
-        tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], mix.inputs[0])
-        tree.links.new(light.outputs[0], mix.inputs[1])
-        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
-        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-        self.plane(m)
-        self.assert_as_cycles(0.01, 16)
-        self.export()
-        self.assertEqual(self.warnings, ["material 'material': surfaces look from behind as from their front; Backfacing is 0"])
-
     def test_multiscatter_ggx_keeps_energy(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         self.camera.data.lens = 200
