@@ -99,7 +99,12 @@ class SightTest(CyclesTest):
             return self.mixed(tree, factor, tree.node("BsdfDiffuse", None, {"Color": BLUE}),
                               tree.node("BsdfGlossy", None, {"Color": ORANGE, "Roughness": 0.3}))
 
-        for name, make in (("fresnel", lambda tree: two(tree, self.fresnel(tree))), ("facing", lambda tree: two(tree, self.facing(tree)))):
+        def glow(tree):
+            light = self.mixed(tree, 0.5, tree.node("Emission", None, {"Color": ORANGE, "Strength": 2.0}), tree.node("BsdfTransparent"))
+            return self.mixed(tree, self.facing(tree), tree.node("BsdfDiffuse", None, {"Color": BLUE}), light)
+
+        for name, make in (("fresnel", lambda tree: two(tree, self.fresnel(tree))), ("facing", lambda tree: two(tree, self.facing(tree))),
+                           ("glow", glow)):
             with self.subTest(name):
                 self.assert_ball_as_in_cycles(make, 0.03)
 
@@ -117,7 +122,11 @@ class SightTest(CyclesTest):
         def dimmed(tree):
             return tree.node("BsdfTransparent", None, {"Color": self.facing(tree, 0.6)})
 
-        for make, warnings in ((x_ray, 0), (bubble, 0), (veil, 0), (dimmed, 1)):
+        def halo(tree):
+            light = tree.node("Emission", None, {"Color": ORANGE, "Strength": self.facing(tree)})
+            return tree.node("AddShader", None, {0: tree.node("BsdfTransparent"), 1: light})
+
+        for make, warnings in ((x_ray, 0), (bubble, 0), (veil, 0), (dimmed, 1), (halo, 0)):
             with self.subTest(make.__name__):
                 self.assert_ball_as_in_cycles(make, warnings=warnings)
 

@@ -124,6 +124,9 @@ class LampPlace(_Place):
         super().__init__(pixels_of, "lamp", None)
         self._count, self._uv, self._normals, self.is_uniform = count, uv, normals, True
 
+    def is_behind(self):
+        return np.False_
+
     def uv_of(self, node, name):
         if self._uv is None:
             raise Unsupported(node, "lamps have another UV map in this version of Blender")
