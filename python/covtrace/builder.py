@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike
 
-from .arguments import linear_of, refuse, resolution_of
+from .arguments import linear_of, refuse, resolution_of, shutter_of, vector_of
 from .builder_calls import BuilderCalls, describe_call
 from .closed import Hinting
 from .errors import UsageError
@@ -71,8 +71,8 @@ def _parameter(name, value):
     raise TypeError(f"parameter {name!r}: give its type as in 'float {name}' or 'spectrum {name}'")
 
 
-_INTEGERS = {"degree", "dimension", "levels", "maxdepth", "nsamples", "pixelsamples", "splitdepth",
-             "xresolution", "yresolution"}
+_INTEGERS = {"apertureblades", "degree", "dimension", "levels", "maxdepth", "nsamples", "pixelsamples", "splitdepth",
+             "tubesides", "xresolution", "yresolution"}
 
 #: Parameters that are colours in every kind of light, material and medium that has them.
 _COLOURS = {"I", "L", "albedo", "color", "coattint", "edgetint", "mfp", "normalreflectance", "reflectance", "sheen", "sigma_a",
@@ -81,7 +81,7 @@ _COLOURS = {"I", "L", "albedo", "color", "coattint", "edgetint", "mfp", "normalr
 #: Types of parameters whose values are neither colours nor single numbers.
 _TYPES = {"from": "point3", "to": "point3", "P": "point3", "p0": "point3", "p1": "point3", "portal": "point3",
           "N": "normal", "S": "vector3", "v1": "vector3", "v2": "vector3", "dir": "vector3", "uv": "point2",
-          "indices": "integer", "screenwindow": "float"}
+          "indices": "integer", "screenwindow": "float", "longitude": "float", "latitude": "float", "conestretch": "float"}
 
 
 def _parameters(values):
@@ -149,6 +149,8 @@ class SceneBuilder(Hinting):
                **parameters: Any) -> None:
         """Sets the camera, in place of an earlier one; kind and parameters as pbrt's Camera: fov,
         lensradius, focaldistance ..."""
+        look_at = [vector_of(name, value, "(x, y, z)") for name, value in (("eye", eye), ("target", target), ("up", up))]
+        shutter = shutter_of(shutter) or (0, 1)
         self._shutter = shutter
         size = resolution_of(resolution)
         try:
@@ -160,7 +162,7 @@ class SceneBuilder(Hinting):
             refuse("resolution", resolution, "(width, height), or a text such as '640x360'")
         call = describe_call("camera", kind)
         self._camera = [(line, call) for line in [
-            "LookAt " + " ".join(repr(float(v)) for v in (*eye, *target, *up)),
+            "LookAt " + " ".join(repr(v) for vector in look_at for v in vector),
             f"Camera {_quoted(kind)} "
             + _parameters({"float shutteropen": shutter[0], "float shutterclose": shutter[1],
                            **parameters}),

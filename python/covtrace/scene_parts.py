@@ -41,7 +41,7 @@ class Part(Closed):
     def __getitem__(self, name: str) -> float | tuple[float, float, float] | None:
         values = self._values()
         if name not in values:
-            raise KeyError(f"there is no value {name!r}; there are {', '.join(values)}{self._elsewhere}")
+            raise KeyError(f"there is no value {name!r}; there are {', '.join(values) or 'none'}{self._elsewhere}")
         return values[name]
 
     def __setitem__(self, name: str, value: ArrayLike) -> None:
@@ -85,8 +85,8 @@ class Placed(Closed):
 
 
 class Camera(Part, Placed):
-    """The camera: "fov" (degrees of the shorter side), "lensradius", "focaldistance"; x is right, y
-    up and z forward in its own space."""
+    """The camera: "fov" (degrees: of the shorter side, of a fisheye's circle), "lensradius", "focaldistance", as far as its kind has
+    them; x is right, y up and z forward in its own space."""
 
     _kind = "camera"
     _elsewhere = "; look_at(eye, target) places it"

@@ -193,6 +193,20 @@ class Builder(unittest.TestCase):
         scene.shape("curve", degree=2, **{"point3 P": [[0, 0, 1], [0, 1, 1], [0, 2, 1]]})
         covtrace.render(scene, spp=1, threads=1)
 
+    def test_cameras_of_all_kinds_take_their_parameters_by_value(self):
+        for values in ({"lensradius": 0.1, "apertureblades": 5, "aperturerotation": 9, "apertureratio": 2},
+                       {"kind": "spherical", "mapping": "equirectangular", "longitude": (60, 120), "latitude": (-30, 30)},
+                       {"kind": "spherical", "mapping": "equisolid", "fov": 220, "screenwindow": (-2, 2, -1, 1)}):
+            scene = covtrace.SceneBuilder()
+            scene.camera(resolution=(8, 8), **values)
+            scene.light("infinite", L=1)
+            with self.subTest(values), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                covtrace.Scene(scene)
+        for name, value in (("eye", "spherical"), ("target", (0, 1)), ("up", None), ("shutter", (0, 1, 2))):
+            with self.subTest(name), self.assertRaisesRegex(covtrace.UsageError, f"^{name} is .*; expected \\("):
+                scene.camera(**{name: value})
+
     def test_wrong_arrays(self):
         scene = covtrace.SceneBuilder()
         good = numpy.array([[0, 1, 2]])

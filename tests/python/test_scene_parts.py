@@ -160,6 +160,20 @@ class Parts(unittest.TestCase):
         camera.to_world = reference.camera.to_world
         self.assert_like(eye="3 2 5", target="0 .5 0", fov=30, lens=0.125, focus=5)
 
+    def test_cameras_have_what_changes_their_picture(self):
+        """A lens radius blurred spherical cameras, which have no lens in files."""
+        for kind, names in (('"orthographic"', ["lensradius", "focaldistance"]), ('"spherical"', []),
+                            ('"spherical" "string mapping" "equirectangular"', []),
+                            ('"spherical" "string mapping" "equisolid" "float fov" 200', ["fov"])):
+            camera = covtrace.Scene.from_string(f'Camera {kind} WorldBegin Shape "sphere"').camera
+            with self.subTest(kind):
+                self.assertEqual(list(camera), names)
+                with self.assertRaisesRegex(KeyError, f"there are {', '.join(names) or 'none'}"):
+                    camera["radius"] = 1
+        camera["fov"] = 360
+        with self.assertRaisesRegex(covtrace.UsageError, "fov: expected a number"):
+            camera["fov"] = 361
+
     def test_shapes(self):
         lamp, ball, floor = self.scene.shapes
         numpy.testing.assert_array_equal(ball.to_world, moved(0.25, 0, 0))
