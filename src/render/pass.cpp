@@ -175,6 +175,7 @@ FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index,
     } else if (record) {
         record->clear();
         record->camera_ray = start.ray;
+        record->last_way = 0;  // the place on the film sees nothing along its ray
     }
     return film_sample(context, start, path);
 }

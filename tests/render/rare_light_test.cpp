@@ -57,5 +57,23 @@ TEST(RareLight, SoDoesItsImageInAMirror) {
     EXPECT_GT(enough(scene(true, true)), 1000);
 }
 
+TEST(RareLight, LampsBesideTheCircleOfAFisheyeDoNotCount) {
+    const auto fisheye = [](const std::string& lamp) {
+        return R"(
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+PixelFilter "box"
+Camera "spherical" "string mapping" "equidistant" "float fov" 40
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
+)" + lamp + R"(
+Translate 2.82 2.82 8
+Shape "sphere" "float radius" 0.002
+)";
+    };
+    // In a corner of the film, 26 degrees from the axis: as if it did not shine
+    EXPECT_EQ(enough(fisheye(R"(AreaLightSource "diffuse" "rgb L" [ 5000 5000 5000 ])")),
+              enough(fisheye("")));
+}
+
 }  // namespace
 }  // namespace covtrace
