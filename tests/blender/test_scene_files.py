@@ -52,12 +52,33 @@ class SceneFilesTest(BlenderTest):
             for a, b in zip(mean(ours, x, y, x + 8, y + 8), mean(theirs, x, y, x + 8, y + 8)):
                 self.assertAlmostEqual(a, b, delta=1e-5, msg=f"{x} {y}")
 
+    def test_names_that_text_cannot_hold_as_they_are(self):
+        self.plane(material(**self.MATT))
+        for name in ('the "room"', "a\\b", "two\nlines", "r\u00e4ume 1.2"):
+            with self.subTest(name):
+                bpy.ops.export_scene.covtrace(filepath=str(self.folder / f"{name}.pbrt"))
+                self.picture(self.folder / f"{name}.pbrt")
+
+    def test_layers_that_are_not_rendered_are_written(self):
+        self.plane(material(**self.MATT))
+        layer = bpy.context.view_layer
+        layer.use = False
+        bpy.ops.export_scene.covtrace(filepath=str(self.folder / "room.pbrt"))
+        self.assertFalse(layer.use)
+        self.assertTrue((self.folder / "room.pbrt").is_file())
+
     def test_what_cannot_be_written_is_an_error(self):
         self.plane(material(**self.MATT))
         (self.folder / "file").write_text("")
         with self.assertRaisesRegex(RuntimeError, "Not a directory.*file"):
             bpy.ops.export_scene.covtrace(filepath=str(self.folder / "file" / "room.pbrt"))
+        for path in ("", f"{self.folder}/", str(self.folder / ".pbrt")):
+            with self.subTest(path), self.assertRaisesRegex(RuntimeError, "^Error: covtrace: the path '.*' names no file"):
+                bpy.ops.export_scene.covtrace(filepath=path)
         self.assertEqual([p.name for p in self.folder.iterdir()], ["file"])
+        (self.folder / "folder.pbrt").mkdir()
+        with self.assertRaisesRegex(RuntimeError, "^Error: covtrace: '.*folder.pbrt' is a folder"):
+            bpy.ops.export_scene.covtrace(filepath=str(self.folder / "folder.pbrt"))
         self.scene.camera = None
         with self.assertRaisesRegex(RuntimeError, "no camera"):
             bpy.ops.export_scene.covtrace(filepath=str(self.folder / "room.pbrt"))
