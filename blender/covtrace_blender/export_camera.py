@@ -6,7 +6,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from .export_shaders import numbers
-from .panorama import is_fisheye, panorama_text
+from .panorama import is_fisheye, left_out_of_panorama, panorama_text, turned
 from .placement import placement
 from .shutter import moves_blurred
 
@@ -113,9 +113,12 @@ class SceneCamera:
 
     def _left_out_of_lens(self):
         data = self._object().data
-        if data.dof.use_dof and data.type == "PANO":
-            return ["the camera's depth of field is left out, as it is a panorama"]
-        return []
+        return left_out_of_panorama(data) if data.type == "PANO" else []
+
+    def _frame(self):
+        """The sides of the frame in one unit, as wide and high as its pixels are."""
+        render = self.scene.render
+        return self.size[0] * render.pixel_aspect_x, self.size[1] * render.pixel_aspect_y
 
     def clip_range(self):
         """(Clip Start, Clip End): distances, along the axis of sight but for panoramas."""
@@ -139,9 +142,9 @@ class SceneCamera:
         if data.type not in KINDS:
             raise RuntimeError(f"covtrace: cameras of the type {data.type} are not supported")
         times = f"TransformTimes {shutter[0]:.9g} {shutter[1]:.9g}\n" if shutter else ""
-        turn = TURN_OF_PANORAMAS if data.type == "PANO" and not is_fisheye(data) else TURN
+        turn = turned(data, TURN_OF_PANORAMAS) if data.type == "PANO" and not is_fisheye(data) else TURN
         place = placement("Transform", _world_to_camera(self.matrix(), turn), _world_to_camera(end, turn) if end else None)
-        parameters = [panorama_text(data, self.size)] if data.type == "PANO" else [f'"float screenwindow" [{numbers(self._window())}]']
+        parameters = [panorama_text(data, self._frame())] if data.type == "PANO" else [f'"float screenwindow" [{numbers(self._window())}]']
         if data.type == "PERSP":
             parameters.append('"float fov" 90')
         if shutter:

@@ -98,20 +98,29 @@ class CameraTest(BlenderTest):
             bpy.context.object.data.materials.append(m)
         self.background.inputs["Color"].default_value = (0.3, 0.3, 0.3, 1)
         for kind, settings in (("FISHEYE_EQUIDISTANT", {"fisheye_fov": 3.0}), ("FISHEYE_EQUISOLID", {"fisheye_fov": 3.3, "fisheye_lens": 9}),
-                               ("FISHEYE_EQUISOLID", {"fisheye_fov": 2.5, "fisheye_lens": 15}),
-                               ("EQUIRECTANGULAR", {"longitude_min": -1, "longitude_max": 0.5, "latitude_min": -0.3, "latitude_max": 1.2})):
+                               ("FISHEYE_EQUISOLID", {"fisheye_fov": 2.5, "fisheye_lens": 15, "pixel_aspect_x": 2}),
+                               ("EQUIRECTANGULAR", {"longitude_min": -1, "longitude_max": 0.5, "latitude_min": -0.3, "latitude_max": 1.2}),
+                               ("EQUIRECTANGULAR", {"longitude_min": 1, "longitude_max": 5}), ("EQUIRECTANGULAR", {"longitude_min": -4, "longitude_max": 0})):
             of.panorama_type = kind
             for name, value in settings.items():
-                setattr(of, name, value)
+                setattr(self.scene.render if name.startswith("pixel") else of, name, value)
             data.update_tag()
             ours, theirs = render("COVTRACE", 16), render("CYCLES", 16)
             for x0, y0 in ((x, y) for x in range(0, WIDTH, 8) for y in range(0, HEIGHT, 8)):
                 part = (x0, y0, x0 + 8, y0 + 8)
                 for a, b in zip(mean(ours, *part), mean(theirs, *part)):
                     self.assertAlmostEqual(a, b, delta=0.03, msg=f"{kind} {part}")
+        of.longitude_max = 4
+        with self.assertRaisesRegex(RuntimeError, "around more than once"):
+            self.export()
+        of.longitude_max = 0
         data.dof.use_dof = True
         self.export()
         self.assertEqual(self.warnings, ["the camera's depth of field is left out, as it is a panorama"])
+        data.dof.use_dof, data.shift_x, of.panorama_type, of.fisheye_fov = False, 0.1, "FISHEYE_EQUIDISTANT", 7
+        self.export()
+        self.assertEqual(self.warnings, ["the camera's shift is left out, as it is a panorama",
+                                         "the camera's fisheye goes around more than once and ends at 360 degrees"])
         of.panorama_type = "MIRRORBALL"
         data.update_tag()
         with self.assertRaisesRegex(RuntimeError, "MIRRORBALL are not supported"):
