@@ -110,9 +110,9 @@ def seconds_of(value: float | str | None, name: str = "time") -> float | None:
     """Seconds, as a number or as a text such as "2.5", "45s", "3m" or "1h30m"."""
     if not isinstance(value, str):
         return value
-    parts = re.findall(r"(\d+(?:\.\d+)?)([smh]?)", value)
+    parts = re.findall(r"(\d+(?:\.\d+)?)([smh]?)", value.lower())
     # Without a unit only a single number is clear: "1h30" could mean minutes or seconds.
-    if "".join(number + unit for number, unit in parts) != value or (len(parts) != 1 and any(not u for _, u in parts)):
+    if "".join(number + unit for number, unit in parts) != value.lower() or (len(parts) != 1 and any(not u for _, u in parts)):
         refuse(name, value, "seconds, or a text such as '45s', '3m' or '1h30m'")
     return sum(float(number) * _SECONDS[unit] for number, unit in parts)
 
@@ -158,7 +158,7 @@ def resolution_of(value: Any) -> Any:
     """(width, height), also from a text such as "640x360"."""
     if not isinstance(value, str):
         return value
-    found = re.fullmatch(r"(\d+)x(\d+)", value)
+    found = re.fullmatch(r"(\d+)[xX](\d+)", value)
     if not found:
         refuse("resolution", value, "(width, height), or a text such as '640x360'")
     return int(found[1]), int(found[2])

@@ -27,7 +27,7 @@ def _bytes(size: int | str | None) -> int | None:
     """A number of bytes, or a text such as "500M" or "2G"."""
     if not isinstance(size, str):
         return size
-    found = re.fullmatch(r"(\d+(?:\.\d+)?)([kmgt]?)", size.strip().lower())
+    found = re.fullmatch(r"(\d+(?:\.\d+)?)([kmgt]?)(?:(?<=[kmgt])i?b)?", size.strip().lower())
     if not found:
         raise UsageError(f"texture_memory is {size!r}; expected a size such as '500M' or '2G'")
     return int(float(found[1]) * _UNITS[found[2]])

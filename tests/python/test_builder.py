@@ -176,8 +176,9 @@ class Builder(unittest.TestCase):
 
     def test_resolutions_may_be_texts(self):
         builder = covtrace.SceneBuilder()
-        builder.camera(resolution="12x8")
-        self.assertEqual(covtrace.Scene(builder).resolution, (12, 8))
+        for text in ("12x8", "12X8"):
+            builder.camera(resolution=text)
+            self.assertEqual(covtrace.Scene(builder).resolution, (12, 8))
         for wrong in ("12", 12, (1, 2, 3), (1.5, 2), ("12", "8"), (numpy.nan, 8), (numpy.inf, 8)):
             with self.subTest(wrong), self.assertRaisesRegex(covtrace.UsageError, r"resolution is .*; expected \(width, height\)"):
                 builder.camera(resolution=wrong)

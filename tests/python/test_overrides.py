@@ -18,6 +18,8 @@ class Overrides(unittest.TestCase):
         image = covtrace.render(scene, method="uniform", spp=1e9, time="0.3s", resolution="12x8")
         self.assertEqual(image.size, (12, 8))
         self.assertLess(image.statistics["seconds_total"], 30)
+        image = covtrace.render(scene, method="uniform", spp=1, time="1M30S", resolution="12X8", texture_memory="2GiB")  # as the program
+        self.assertEqual(image.size, (12, 8))
         for wrong in ({"time": "3x"}, {"time": ""}, {"time": "1h30"}, {"time": "-1s"}, {"time": "0s"}, {"resolution": "12"},
                       {"resolution": "12x"}, {"resolution": "0x4"}, {"resolution": "-3x4"}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):

@@ -278,7 +278,7 @@ class Errors(unittest.TestCase):
         scene = covtrace.Scene.from_string(scenes.FURNACE)
         for wrong in ({"method": "best"}, {"spp": -1}, {"spp": "many"}, {"threads": -2},
                       {"crop": (0, 0, 100, 100)}, {"error": 0.1, "method": "covariance"},
-                      {"texture_memory": "much"}, {"texture_memory": -1}, {"texture_memory": 1.5},
+                      {"texture_memory": "much"}, {"texture_memory": "2b"}, {"texture_memory": -1}, {"texture_memory": 1.5},
                       {"voxels": 0}, {"voxels": "wide"}, {"seed": -1}, {"threads": "all"},
                       {"isa": "mmx"}, {"method": 3}, {"progressive": "now"},
                       {"texture_bandwidth": "low"}, {"resolution": (-5, 4)}, {"resolution": (0, 4)},
