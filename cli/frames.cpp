@@ -54,7 +54,7 @@ FrameRange parse_frames(const std::string& option, const std::string& text) {
         if (!is_number) refuse();
         return static_cast<int>(parse_whole(option, part, 0, kMost));
     };
-    const size_t dash = text.find('-'), cross = text.find('x');
+    const size_t dash = text.find('-'), cross = text.find_first_of("xX");
     FrameRange frames;
     frames.first = frames.last = number(text.substr(0, std::min(dash, cross)));
     if (dash != std::string::npos)

@@ -31,10 +31,24 @@ struct ShapeCounts {
 std::string mapping_text(const CameraDescription& camera) {
     using Mapping = CameraDescription::Mapping;
     if (camera.mapping == Mapping::equal_area) return "spherical, equal-area";
-    if (camera.mapping == Mapping::equirectangular) return "spherical, equirectangular";
     std::ostringstream out;
+    if (camera.mapping == Mapping::equirectangular) {
+        out << "spherical, equirectangular";
+        const auto& [left, right, top, bottom] = camera.sphere_part;
+        if (camera.sphere_part != CameraDescription{}.sphere_part)
+            out << ", longitude " << 360 * left << " to " << 360 * right << ", latitude "
+                << 90 - 180 * bottom << " to " << 90 - 180 * top;
+        return out.str();
+    }
     out << (camera.mapping == Mapping::equidistant ? "equidistant" : "equisolid")
         << " fisheye, field of view " << camera.fov;
+    return out.str();
+}
+
+std::string aperture_text(const ApertureBlades& blades) {
+    std::ostringstream out;
+    if (blades.count > 0) out << ", " << blades.count << " blades";
+    if (blades.ratio != 1) out << ", aperture ratio " << blades.ratio;
     return out.str();
 }
 
@@ -65,8 +79,8 @@ std::string summarize(const SceneDescription& scene) {
         << "film       " << scene.film.width << "x" << scene.film.height << ", "
         << scene.samples_per_pixel << " samples per pixel, depth " << scene.max_depth << "\n"
         << "camera     " << kind_text(camera) << ", lens radius " << camera.lens_radius
-        << ", focal distance " << camera.focal_distance << ", shutter " << camera.shutter_open
-        << " to " << camera.shutter_close
+        << aperture_text(camera.blades) << ", focal distance " << camera.focal_distance
+        << ", shutter " << camera.shutter_open << " to " << camera.shutter_close
         << (camera.camera_to_world.is_animated() ? ", moving" : "") << "\n"
         << "view       " << view_text(scene) << "\n"
         << "shapes     " << top.shapes << " (" << top.triangles << " triangles, " << top.patches

@@ -130,6 +130,11 @@ class Camera(CliTest):
             ('"orthographic"', "orthographic, lens radius 0"),
             ('"spherical"', "spherical, equal-area, lens radius 0"),
             ('"spherical" "string mapping" "equirectangular"', "spherical, equirectangular, lens radius 0"),
+            ('"spherical" "string mapping" "equirectangular" "float longitude" [90 180] "float latitude" [-45 90]',
+             "spherical, equirectangular, longitude 90 to 180, latitude -45 to 90, lens radius 0"),
+            ('"spherical" "string mapping" "equisolid" "float fov" 220', "equisolid fisheye, field of view 220, lens radius 0"),
+            ('"orthographic" "float lensradius" 0.5 "integer apertureblades" 5 "float apertureratio" 2',
+             "orthographic, lens radius 0.5, 5 blades, aperture ratio 2, focal"),
         ):
             self.write("scene.pbrt", f"{ELSEWHERE}Camera {camera}\n" + FILM + WORLD)
             self.assertIn(f"camera     {told}", self.run_program("info", "scene.pbrt").stdout)

@@ -59,7 +59,7 @@ class Frames(CliTest):
         return mean, (sum(v * (i % WIDTH - mean) ** 2 for i, v in enumerate(light)) / total) ** 0.5
 
     def test_each_moment_has_its_file(self):
-        self.assertEqual(self.frames("--frames", "0-8x4", "--fps", "4", "-o", "a.exr").code, DONE)
+        self.assertEqual(self.frames("--frames", "0-8X4", "--fps", "4", "-o", "a.exr").code, DONE)
         self.assertEqual(sorted(p.name for p in self.folder.glob("*.exr")), ["a.0000.exr", "a.0004.exr", "a.0008.exr"])
         green = [self.place(f"a.{frame:04}.exr", "G") for frame in (0, 4, 8)]
         red = [self.place(f"a.{frame:04}.exr", "R") for frame in (0, 4, 8)]
