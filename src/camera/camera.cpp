@@ -155,7 +155,6 @@ SensorGeometry Camera::spherical_sensor(const Ray& ray, const Transform& camera_
     constexpr float kSmallest = 1e-6f;  // radians per pixel; less only where the map is torn
     g.pixels_per_x = 1 / std::max(length(x), kSmallest);
     g.pixels_per_y = 1 / std::max(std::abs(dot(g.down, y)), kSmallest);
-    g.to_rim = panorama_->to_rim(film);
     return g;
 }
 

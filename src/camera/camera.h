@@ -30,9 +30,6 @@ struct SensorGeometry {
     /// Motion of the camera at the ray's lens point and time: world units and radians per unit of
     /// time.
     Vec3 velocity, angular_velocity;
-    /// From the ray's place on the film to the nearest one that sees nothing, in pixels right and
-    /// down: of a fisheye, whose picture ends there as at an occluder's edge.
-    std::optional<Vec2> to_rim;
 };
 
 /// A ray of a camera.

@@ -87,15 +87,6 @@ bool Panorama::sees(Vec2 film) const {
     return length(Vec2{origin_.x + film.x * per_pixel_.x, origin_.y + film.y * per_pixel_.y}) <= 1;
 }
 
-std::optional<Vec2> Panorama::to_rim(Vec2 film) const {
-    if (!is_fisheye()) return std::nullopt;
-    const Vec2 p{origin_.x + film.x * per_pixel_.x, origin_.y + film.y * per_pixel_.y};
-    const float r = length(p);
-    if (!(r > 0)) return std::nullopt;
-    const Vec2 outward{p.x / r * per_pixel_.x, p.y / r * per_pixel_.y};  // growth of r per pixel
-    return outward * (std::max(0.0f, 1 - r) / dot(outward, outward));
-}
-
 float Panorama::pixel_angle() const {
     if (is_fisheye()) return half_fov_ * per_pixel_.x;
     return kPi * (sphere_part_[3] - sphere_part_[2]) / size_.y;

@@ -1,8 +1,6 @@
 /// Cameras that see by a map of directions: panoramas and fisheyes.
 #pragma once
 
-#include <optional>
-
 #include "scene/scene_description.h"
 
 namespace covtrace {
@@ -25,9 +23,6 @@ class Panorama {
     Vec2 film(Vec3 direction) const;
     /// Whether light gets to a place: within a fisheye's circle.
     bool sees(Vec2 film) const;
-    /// The way from a place within a fisheye's circle to the nearest beside it, in pixels; none
-    /// from the middle, and of other maps.
-    std::optional<Vec2> to_rim(Vec2 film) const;
     /// Angle of a pixel, radians, where the map is not stretched.
     float pixel_angle() const;
 

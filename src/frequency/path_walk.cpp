@@ -42,18 +42,6 @@ cov::SymmetricMatrix5<double> to_sensor(const LightField& at_rest, const SensorG
                                        g.pixels_per_x, g.pixels_per_y, g.shutter});
 }
 
-/// Ends the picture at a fisheye's rim, which is an edge on the film itself.
-cov::SymmetricMatrix5<double> at_rim(const cov::SymmetricMatrix5<double>& sigma,
-                                     const SensorGeometry& g) {
-    constexpr float kReach = 8;  // pixels; as for edges of occluders (occlusion.cpp, kDistance)
-    constexpr float kNearest = 0.1f;  // pixels
-    if (!g.to_rim) return sigma;
-    const float d = length(*g.to_rim);
-    if (!(d > 0 && d < kReach)) return sigma;
-    return cov::occlude(sigma, double(g.to_rim->x / d), double(g.to_rim->y / d),
-                        double(std::max(d, kNearest)));
-}
-
 }  // namespace
 
 void ArrivingLight::add(const LightField& other, double other_weight) {
@@ -242,7 +230,7 @@ PathCovariance PathWalk::at_sensor() {
     if (light_.field) {
         const cov::Motion<double> motion{camera_.velocity, camera_.angular_velocity};
         if (!motion.at_rest()) light_.field = cov::motion_enter(*light_.field, motion);
-        result.sigma = at_rim(to_sensor(*light_.field, camera_), camera_);
+        result.sigma = to_sensor(*light_.field, camera_);
     }
     if (!cov::is_finite(result.sigma) || !std::isfinite(result.weight)) return {};
     return result;

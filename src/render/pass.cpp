@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "camera/film_rim.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "covariance/occlusion.hpp"
 #include "frequency/replay.h"
 #include "integrator/path_batch.h"
 
@@ -262,6 +264,26 @@ bool shows_emitter(const PathRecord& record) {
     return false;
 }
 
+/// The film's rim around a tile and as far beyond it as pixel filters commonly reach.
+FilmRim rim_near(const Camera& camera, const PixelBounds& tile) {
+    constexpr float kMargin = 8;  // pixels
+    return {camera,
+            {float(tile.x0) - kMargin, float(tile.y0) - kMargin},
+            {float(tile.x1) + kMargin, float(tile.y1) + kMargin}};
+}
+
+/// A path's covariance at a place of the film from which `way` leads to the film's rim, whose edge
+/// it has, too.
+PathCovariance beside_rim(PathCovariance path, const std::optional<Vec2>& way) {
+    constexpr float kNearest = 0.1f;  // pixels
+    if (!way || !(path.weight > 0)) return path;
+    const float d = length(*way);
+    if (d > 0)
+        path.sigma = covariance::occlude(path.sigma, double(way->x / d), double(way->y / d),
+                                         double(std::max(d, kNearest)));
+    return path;
+}
+
 /// Adds a path's covariance to `mean`, the mean of `paths` paths before it. Its weight is cut to
 /// `weight_limit`.
 void add_path(PackedCovariance& mean, uint32_t paths, const PathCovariance& path,
@@ -277,7 +299,7 @@ void add_path(PackedCovariance& mean, uint32_t paths, const PathCovariance& path
 PassStatistics covariance_pass(const PassContext& context, const PathReplay& replay, Film& film,
                                std::span<const uint32_t> counts, const CovarianceTarget& target,
                                const Monitor& monitor, const PassProgress& progress) {
-    const auto take = [&](size_t i, int x, int y, PassStatistics& statistics) {
+    const auto take = [&](size_t i, int x, int y, const FilmRim& rim, PassStatistics& statistics) {
         static thread_local PathRecord record;
         const uint32_t index = film.pixels[i].count;
         const uint32_t paths = index + (target.earlier.empty() ? 0 : target.earlier[i]);
@@ -285,11 +307,13 @@ PassStatistics covariance_pass(const PassContext& context, const PathReplay& rep
         const FilmSample s = take_sample(context, x, y, index, &record, path);
         add_sample(context, film, i, x, y, path, s, statistics);
         const Stopwatch watch(statistics.replay_seconds);
-        add_path(target.buffers.scattered[i], paths, replay(record, LightPart::scattered),
-                 target.weight_limit);
+        std::optional<Vec2> to_rim;
+        if (rim.is_there()) to_rim = rim.way(begin_path(context, x, y, index).film);
+        add_path(target.buffers.scattered[i], paths,
+                 beside_rim(replay(record, LightPart::scattered), to_rim), target.weight_limit);
         const PathCovariance in_view =
             shows_emitter(record) ? replay(record, LightPart::in_view) : PathCovariance{};
-        add_path(target.buffers.in_view[i], paths, in_view, kInfinity);
+        add_path(target.buffers.in_view[i], paths, beside_rim(in_view, to_rim), kInfinity);
     };
     return for_each_tile(context, film, monitor, progress,
                          [&](const PixelBounds& tile, Stop& stop, PassStatistics& statistics) {
@@ -298,12 +322,13 @@ PassStatistics covariance_pass(const PassContext& context, const PathReplay& rep
                              // thousands.
                              constexpr uint64_t kRaysBetweenLooks = 256;
                              uint64_t look_at = 0;
+                             const FilmRim rim = rim_near(context.scene.camera, tile);
                              for (int y = tile.y0; y < tile.y1; ++y)
                                  for (int x = tile.x0; x < tile.x1; ++x) {
                                      const size_t i = film.index(x, y);
                                      while (film.pixels[i].count < counts[i]) {
                                          if (stop()) return false;
-                                         take(i, x, y, statistics);
+                                         take(i, x, y, rim, statistics);
                                          stop.took_samples();
                                          const uint64_t rays = statistics.rays.total();
                                          if (rays < look_at) continue;

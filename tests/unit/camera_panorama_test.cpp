@@ -96,25 +96,5 @@ TEST(Panorama, SensorOfAFisheyeHasItsScaleThere) {
     }
 }
 
-TEST(Panorama, SensorOfAFisheyeKnowsTheWayToItsRim) {
-    const Camera camera(panorama(Mapping::equisolid, 220), kWidth, kHeight);
-    const auto to_rim = [](const Camera& c, Vec2 film) {
-        return c.sensor(c.generate_ray(film, {}, 0)).to_rim;
-    };
-    const auto right = to_rim(camera, {120, 45}), above = to_rim(camera, {80, 5});
-    ASSERT_TRUE(right && above);
-    EXPECT_NEAR(right->x, 5, 0.01f);
-    EXPECT_NEAR(right->y, 0, 0.01f);
-    EXPECT_NEAR(above->x, 0, 0.01f);
-    EXPECT_NEAR(above->y, -5, 0.01f);
-    EXPECT_FALSE(to_rim(Camera(panorama(Mapping::equal_area), 64, 64), {9, 9}));
-    // Pixels that are twice as high as wide: the rim is nearest along its normal on the film.
-    CameraDescription stretched = panorama(Mapping::equidistant);
-    stretched.screen_window = {-1, 1, -1, 1};
-    const auto aside = to_rim(Camera(stretched, 128, 64), {64 + 64 * 0.69f, 32 - 32 * 0.69f});
-    ASSERT_TRUE(aside);
-    EXPECT_NEAR(aside->y, -2 * aside->x, 0.01f);
-}
-
 }  // namespace
 }  // namespace covtrace::test
