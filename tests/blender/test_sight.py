@@ -28,6 +28,12 @@ class SightTest(CyclesTest):
     def fresnel(tree, index=1.8):
         return tree.node("Fresnel", None, {"IOR": index}), 0
 
+    @staticmethod
+    def product(tree):
+        """The cosine, as one's own formulas of Fresnel's have it."""
+        geometry = tree.node("NewGeometry")
+        return tree.node("VectorMath", {"operation": "DOT_PRODUCT"}, {0: (geometry, "Normal"), 1: (geometry, "Incoming")}), "Value"
+
     def ramp(self, tree, factor, first=(0.05, 0.8, 0.1, 1), second=(0.9, 0.1, 0.6, 1)):
         node = tree.node("ValToRGB", None, {"Fac": factor})
         node.color_ramp.elements[0].color, node.color_ramp.elements[1].color = first, second
@@ -72,7 +78,7 @@ class SightTest(CyclesTest):
     def test_light_by_the_angle(self):
         for name, factor in (("facing", lambda tree: self.facing(tree)), ("fresnel", lambda tree: self.fresnel(tree, 2.0)),
                              ("steep", lambda tree: self.facing(tree, 0.8)),
-                             ("layer", lambda tree: (tree.node("LayerWeight", None, {"Blend": 0.6}), "Fresnel"))):
+                             ("product", self.product), ("layer", lambda tree: (tree.node("LayerWeight", None, {"Blend": 0.6}), "Fresnel"))):
             with self.subTest(name):
                 self.assert_ball_as_in_cycles(lambda tree: tree.node("Emission", None, {"Color": self.ramp(tree, factor(tree))}), samples=64)
         with self.subTest("strength"):

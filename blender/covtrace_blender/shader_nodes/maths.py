@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .sight import is_cosine
 from .unsupported import Unsupported
 
 
@@ -98,6 +99,8 @@ VECTOR_OPERATIONS = {
 
 
 def _vector_math(node, output, inputs):
+    if is_cosine(node):
+        return inputs.place.cosine()
     if node.operation == "SCALE":
         return inputs.vector(0) * inputs.number("Scale")[..., None]
     if node.operation not in VECTOR_OPERATIONS:

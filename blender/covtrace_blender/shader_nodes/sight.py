@@ -22,6 +22,13 @@ def mean_over_angles(get, nodes):
     return sum(values) / np.float32(ANGLES)
 
 
+def is_cosine(node):
+    """Whether a node Vector Math is the product of the direction of sight and the normal, of which the node Geometry has both."""
+    sources = [next(iter(socket.links), None) for socket in node.inputs[:2]]
+    return node.operation == "DOT_PRODUCT" and all(link and link.from_node.type == "NEW_GEOMETRY" for link in sources) and \
+        {link.from_socket.identifier for link in sources} == {"Incoming", "Normal"}
+
+
 def _of_border(place, eta):
     """The reflectance of a border of this index, which is that from within behind the surface."""
     return reflectance(place.cosine(), np.where(place.is_behind(), 1 / eta, eta))
