@@ -95,15 +95,21 @@ std::vector<float> light_of_bounces(const PathLesson& lesson) {
 /// The spots that the bounces of a lesson, of which `numbers` may be guided, tell of.
 BrightSpots find_spots(const PathLesson& lesson, std::span<const uint32_t> numbers,
                        std::span<const float> light) {
-    std::vector<SpotHit> hits;
+    // The moment is that of the BSDF alone, whatever led the path
+    const auto moment_of = [&](uint32_t i) {
+        const GuideBounce& b = lesson.bounces[i];
+        const float moment = sqr(b.carried * b.value * light[i]) / (b.bsdf_pdf * b.path_pdf);
+        return std::isfinite(moment) ? moment : 0.0f;
+    };
     double noise = 0;
+    for (uint32_t i : numbers) noise += double(moment_of(i));
+    // Bounces that bring less than the mean are no sign of a spot, and most of all
+    const double mean = noise / double(numbers.size());
+    std::vector<SpotHit> hits;
     for (uint32_t i : numbers) {
         const GuideBounce& b = lesson.bounces[i];
-        // The moment is that of the BSDF alone, whatever led the path
-        const float moment = sqr(b.carried * b.value * light[i]) / (b.bsdf_pdf * b.path_pdf);
-        if (!std::isfinite(moment) || !(moment > 0)) continue;
-        noise += double(moment);
-        if (b.to >= 0)
+        const float moment = moment_of(i);
+        if (b.to >= 0 && double(moment) > mean)
             hits.push_back({lesson.places[b.from].position, lesson.places[size_t(b.to)].position,
                             light[i], moment, b.path_pdf, b.bsdf_pdf, b.path});
     }
