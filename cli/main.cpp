@@ -87,6 +87,7 @@ std::vector<std::string> arguments_reversed(const CLI::App& app, int argc, char*
     if (!all.empty() && all.front() == "help") {
         all.erase(all.begin());
         all.resize(std::min<size_t>(all.size(), 1));
+        if (all == std::vector<std::string>{"help"}) all.clear();
         const std::vector<std::string> commands = names_of_commands(app);
         if (all.empty() || std::find(commands.begin(), commands.end(), all[0]) != commands.end())
             all.emplace_back("--help");

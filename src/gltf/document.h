@@ -55,9 +55,10 @@ template <typename T>
 const T& at(const Document& document, const std::vector<T>& list, int index,
             std::string_view list_name, const std::string& place) {
     if (index < 0 || static_cast<size_t>(index) >= list.size())
-        document.refuse(place, "there is no " + std::string(list_name) + "[" +
-                                   std::to_string(index) + "]; expected less than " +
-                                   std::to_string(list.size()));
+        document.refuse(
+            place, "there is no " + std::string(list_name) + "[" + std::to_string(index) + "]; " +
+                       (list.empty() ? "the file has none"
+                                     : "expected less than " + std::to_string(list.size())));
     return list[static_cast<size_t>(index)];
 }
 

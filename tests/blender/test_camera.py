@@ -111,8 +111,9 @@ class CameraTest(BlenderTest):
                 for a, b in zip(mean(ours, *part), mean(theirs, *part)):
                     self.assertAlmostEqual(a, b, delta=0.03, msg=f"{kind} {part}")
         of.longitude_max = 4
-        with self.assertRaisesRegex(RuntimeError, "around more than once"):
-            self.export()
+        if of.longitude_max == 4:  # Blender 3.4 allows half a turn to either side
+            with self.assertRaisesRegex(RuntimeError, "around more than once"):
+                self.export()
         of.longitude_max = 0
         data.dof.use_dof = True
         self.export()

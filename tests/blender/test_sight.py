@@ -132,7 +132,10 @@ class SightTest(CyclesTest):
             light = tree.node("Emission", None, {"Color": ORANGE, "Strength": self.facing(tree)})
             return tree.node("AddShader", None, {0: tree.node("BsdfTransparent"), 1: light})
 
-        for make, warnings in ((x_ray, 0), (bubble, 0), (veil, 0), (dimmed, 1), (halo, 0)):
+        makes = [(x_ray, 0), (bubble, 0), (dimmed, 1), (halo, 0)]
+        if bpy.app.version >= (4, 0):  # the diffuse part of the earlier Principled is brighter at its rim, with an even alpha, too
+            makes.append((veil, 0))
+        for make, warnings in makes:
             with self.subTest(make.__name__):
                 self.assert_ball_as_in_cycles(make, warnings=warnings)
 

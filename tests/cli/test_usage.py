@@ -62,7 +62,7 @@ class WrongCommandLines(CliTest):
         self.assert_fails(self.run_program("scene.pbrt"), USAGE, "\"scene.pbrt\" is no command; 'covtrace render FILE' renders a scene")
 
     def test_help_is_a_word_too(self):
-        for words, option in (((), ()), (("render",), ("render",)), (("compare", "a.exr"), ("compare",))):
+        for words, option in (((), ()), (("render",), ("render",)), (("compare", "a.exr"), ("compare",)), (("help",), ())):
             with self.subTest(words=words):
                 self.assertEqual(self.run_program("help", *words).stdout, self.run_program(*option, "--help").stdout)
 

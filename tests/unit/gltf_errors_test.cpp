@@ -62,7 +62,7 @@ TEST(GltfErrors, TellsThePlaceInTheDocument) {
               "t.gltf: meshes[0].primitives[0].attributes.POSITION: there is no accessors[99]; "
               "expected less than 3");
     EXPECT_EQ(changed([&](json& r) { primitive(r)["material"] = 3; }),
-              "t.gltf: meshes[0].primitives[0]: there is no materials[3]; expected less than 0");
+              "t.gltf: meshes[0].primitives[0]: there is no materials[3]; the file has none");
     EXPECT_EQ(changed([](json& r) { r["accessors"][0]["count"] = 5; }),
               "t.gltf: accessors[0]: 5 elements end beyond the buffer view of 48 bytes");
     EXPECT_EQ(changed([](json& r) { r["accessors"][0]["byteOffset"] = 4294967295u; }),
