@@ -51,9 +51,9 @@ struct OcclusionQuery {
 /// A place of a shape where its alpha texture is looked up.
 struct AlphaPlace {
     Vec2 uv;
-    Vec3 position;         ///< world space
-    VertexPlace vertices;  ///< in a mesh whose vertices have values
-    Vec3 normal = {};      ///< unit, of the geometry, world space
+    Vec3 position;                    ///< world space
+    VertexPlace vertices;             ///< in a mesh whose vertices have values
+    Vec3 normal = {};                 ///< unit, of the geometry, world space
     float facing = kSeenFromNowhere;  ///< SurfaceHit::facing
 };
 /// Opacity of a shape's alpha texture at a place.
