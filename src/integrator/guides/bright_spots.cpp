@@ -91,6 +91,7 @@ std::optional<Found> best_of(const std::array<std::vector<SpotHit>, 2>& hits) {
             float radius = kWidest * distance(centre.from, centre.to);
             for (int k = 0; k < kRadii; ++k, radius *= kNextRadius) {
                 const Gain found = gain_of(own, centre.to, radius);
+                // A ball of which this half tells less than the other is found by that one
                 if (!found.is_known || found.taken < kMostOfItsOwn * found.noise ||
                     (best && found.taken <= best->gain / 2))
                     continue;
